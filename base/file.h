@@ -1,0 +1,36 @@
+/* base/file.h: whole files in, whole files or nothing out. */
+#ifndef KILN_BASE_FILE_H
+#define KILN_BASE_FILE_H
+
+#include "base/report.h"
+
+/* Bytes of a file; data has one zero byte behind the end. Free with file_free. */
+typedef struct kiln_bytes {
+    unsigned char *data;
+    size_t size;
+} kiln_bytes;
+
+/* Reads path, or standard input for "-". Directories, devices and files above limit bytes are refused. where may be
+ * NULL: then the path itself is the place. */
+bool file_read(const char *path, uint64_t limit, kiln_bytes *bytes, const kiln_where *where, kiln_report *report);
+void file_free(kiln_bytes *bytes);
+
+/* A file that appears under its name whole or not at all: written to a temporary beside it, flushed to the disk,
+ * renamed. "-" is standard output. */
+typedef struct kiln_writer kiln_writer;
+kiln_writer *file_create(const char *path, kiln_report *report); /* NULL: reported */
+/* Where to write before file_commit: a name to hand to a library that opens files itself. */
+const char *file_temporary_name(const kiln_writer *);
+bool file_write(kiln_writer *, const void *data, size_t size);
+/* Renames into place; false: reported, and nothing is left behind. Frees the writer either way. */
+bool file_commit(kiln_writer *, kiln_report *report);
+void file_discard(kiln_writer *); /* removes the temporary; NULL is fine */
+
+/* write(path, data) in one go. */
+bool file_replace(const char *path, const void *data, size_t size, kiln_report *report);
+
+/* The part of path after the last '/', and its suffix with the dot, lower-cased into a buffer; "" when none. */
+const char *path_base(const char *path);
+void path_suffix(const char *path, char suffix[16]);
+
+#endif

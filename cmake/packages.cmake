@@ -1,0 +1,16 @@
+# Every package is Debian's; docs/dependencies.md says what each is for.
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
+find_package(TIFF REQUIRED)
+find_package(OpenEXR CONFIG REQUIRED)
+find_package(OpenSubdiv CONFIG REQUIRED)
+find_package(embree CONFIG REQUIRED) # 3 on Debian 12, 4 on Debian 13: render/accel/embree.h absorbs the difference
+pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
+pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
+pkg_check_modules(TINYGLTF REQUIRED IMPORTED_TARGET tinygltf)
+pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO)
+if(KILN_TESTS)
+  pkg_check_modules(CMOCKA REQUIRED IMPORTED_TARGET cmocka)
+endif()

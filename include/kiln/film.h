@@ -1,0 +1,65 @@
+/* kiln/film.h: the Film: what a render has summed so far.
+ *
+ * Sums are 128-bit fixed point, so that no order or grouping of samples can change a bit. They are kept in
+ * KILN_REPLICATES independently scrambled replicates, from which the error is estimated. A film can be rendered
+ * into again: samples that it already holds are not repeated. */
+#ifndef KILN_FILM_H
+#define KILN_FILM_H
+
+#include "kiln/api.h"
+#include "kiln/report.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct kiln_film kiln_film;
+
+/* What a film can hold beside the beauty: bit, name (option, EXR layer), channels, what it is. */
+#define KILN_AOVS(X)                                                                                                   \
+    X(ALPHA, "alpha", 1, "coverage: 0 where the camera sees nothing but the background")                               \
+    X(ALBEDO, "albedo", 3, "directional albedo of the first surface, in the working space")                            \
+    X(NORMAL, "normal", 3, "shading normal of the first surface, world space")                                         \
+    X(DEPTH, "depth", 1, "metres along the camera's axis to the first surface, averaged over the samples that hit")    \
+    X(SAMPLES, "samples", 1, "samples taken in the pixel")                                                             \
+    X(ERROR, "error", 1, "estimated standard error of the pixel, root of the mean over the channels")
+
+typedef enum kiln_aov {
+#define KILN_AOV_INDEX(id, name, channels, text) KILN_AOV_##id,
+    KILN_AOVS(KILN_AOV_INDEX)
+#undef KILN_AOV_INDEX
+        KILN_AOV_COUNT
+} kiln_aov;
+
+typedef struct kiln_film_desc {
+    uint32_t width, height;     /* of the whole picture, 1 … 65,536 */
+    uint32_t crop[4];           /* x0, y0, x1, y1, right and bottom exclusive; all zero: the whole picture */
+    uint32_t aovs;              /* bits 1 << kiln_aov */
+} kiln_film_desc;
+
+KILN_API bool kiln_film_create(const kiln_film_desc *, kiln_film **film, kiln_report *);
+KILN_API void kiln_film_destroy(kiln_film *);
+KILN_API kiln_film_desc kiln_film_describe(const kiln_film *); /* crop always filled in */
+
+/* The means so far, as floats: (x1 − x0) × (y1 − y0) × channels, rows from the top. */
+KILN_API void kiln_film_beauty(const kiln_film *, float *rgb);
+KILN_API bool kiln_film_aov(const kiln_film *, kiln_aov, float *values); /* false: the film does not hold it */
+
+/* What the film knows of its own accuracy. Estimates come from the spread of the replicates. */
+typedef struct kiln_film_error {
+    bool known;            /* false before every replicate has a sample */
+    double relmse;         /* mean over pixels and channels of variance / (mean² + 0.01) */
+    double relmse_trimmed; /* without the worst 0.1 % of the pixels */
+    double relmse_low, relmse_high; /* 95 % interval of relmse */
+    bool heavy_tail;       /* few pixels hold most of the error: an unseen tail is likely */
+} kiln_film_error;
+KILN_API kiln_film_error kiln_film_estimate_error(const kiln_film *);
+
+KILN_API uint64_t kiln_film_samples(const kiln_film *);      /* in all pixels together */
+KILN_API uint32_t kiln_film_spp(const kiln_film *);          /* samples in every pixel, finished passes alone */
+KILN_API size_t kiln_film_bytes(const kiln_film *);          /* memory of the sums */
+
+#ifdef __cplusplus
+}
+#endif
+#endif

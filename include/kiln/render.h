@@ -1,0 +1,126 @@
+/* kiln/render.h: a committed Scene becomes a Film. */
+#ifndef KILN_RENDER_H
+#define KILN_RENDER_H
+
+#include "kiln/api.h"
+#include "kiln/film.h"
+#include "kiln/report.h"
+#include "kiln/scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What is built once for a scene: acceleration structure, decoded textures, lights. Immutable. */
+typedef struct kiln_renderer kiln_renderer;
+
+/* How encoded pictures become working-space values: filled by kiln_color_working_space, or zero for
+ * linear Rec.709. One row per kiln_transfer. */
+typedef struct kiln_decoding {
+    bool present;
+    float curve[KILN_TRANSFER_COUNT][256]; /* 8-bit code to linear; 16-bit codes and floats use the piecewise curve
+                                              of the transfer itself */
+    float matrix[KILN_TRANSFER_COUNT][9];  /* row-major, after the curve: into the working space */
+} kiln_decoding;
+
+typedef struct kiln_renderer_options {
+    uint32_t threads;          /* 0: every core that the process may use */
+    const char *embree_config; /* rtcNewDevice's string, "isa=avx2"; NULL: none */
+    const kiln_decoding *decoding; /* NULL: linear Rec.709 */
+} kiln_renderer_options;
+
+/* Reads scene for as long as the renderer lives. */
+KILN_API bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *, kiln_renderer **, kiln_report *);
+KILN_API void kiln_renderer_destroy(kiln_renderer *);
+
+typedef enum kiln_estimator {
+    KILN_ESTIMATOR_MIS,  /* light and BSDF samples combined by the power heuristic (Veach 1997) */
+    KILN_ESTIMATOR_NEE,  /* light samples at every bounce; emission that the BSDF finds counts only at the first hit,
+                            after a perfectly specular bounce, or from emitters that no light sample can reach */
+    KILN_ESTIMATOR_BSDF  /* emission only by hitting it; punctual lights, which nothing can hit, are still sampled */
+} kiln_estimator;
+
+typedef enum kiln_roulette_kind {
+    KILN_ROULETTE_AUTO,       /* the best policy that we know: docs/estimator.md */
+    KILN_ROULETTE_OFF,        /* only the depth limit and black surfaces end a path */
+    KILN_ROULETTE_FIXED,      /* survive every bounce with probability p */
+    KILN_ROULETTE_THROUGHPUT  /* survive with the largest channel of the throughput, at most 0.99 */
+} kiln_roulette_kind;
+
+typedef struct kiln_roulette {
+    kiln_roulette_kind kind;
+    double p;           /* FIXED: 0 < p ≤ 1 */
+    uint32_t min_depth; /* THROUGHPUT: the first bounces are guaranteed and do not enter the survival weights */
+} kiln_roulette;
+
+typedef enum kiln_sampler { KILN_SAMPLER_SOBOL, KILN_SAMPLER_INDEPENDENT } kiln_sampler;
+typedef enum kiln_light_sampling { KILN_LIGHTS_POWER, KILN_LIGHTS_UNIFORM } kiln_light_sampling;
+typedef enum kiln_pixel_filter { KILN_PIXEL_BLACKMAN_HARRIS, KILN_PIXEL_GAUSSIAN, KILN_PIXEL_BOX } kiln_pixel_filter;
+typedef enum kiln_background { KILN_BACKGROUND_ENVIRONMENT, KILN_BACKGROUND_TRANSPARENT, KILN_BACKGROUND_COLOR } kiln_background;
+
+typedef struct kiln_progress {
+    uint32_t spp_done;   /* finished passes */
+    uint64_t samples;    /* in all pixels */
+    double fraction;     /* of the work that the stop rules leave, 0 … 1; an estimate for noise */
+    double seconds, seconds_left; /* since the call began; left < 0: unknown */
+    double error;        /* square root of the estimated relMSE; < 0: unknown */
+} kiln_progress;
+
+typedef enum kiln_stop { KILN_STOP_SPP, KILN_STOP_NOISE, KILN_STOP_BUDGET, KILN_STOP_CANCELLED } kiln_stop;
+
+/* Zero-initialised options mean the defaults in brackets. */
+typedef struct kiln_render_options {
+    const kiln_camera *camera;   /* [the scene's first camera] */
+    uint32_t spp;                /* [64 when no rule at all is given, else no limit] */
+    double noise;                /* target for the square root of the estimated relMSE, 0.01 for 1 % [no target] */
+    double budget_seconds;       /* [no limit] */
+    uint64_t seed;
+    uint32_t max_depth;          /* scattering events of a path [64]; KILN_DEPTH_ZERO for none */
+    kiln_estimator estimator;
+    kiln_roulette roulette;
+    kiln_sampler sampler;
+    kiln_light_sampling light_sampling;
+    kiln_pixel_filter filter;
+    double filter_width;         /* diameter, pixels [blackman-harris 3, gaussian 3, box 1] */
+    kiln_background background;
+    float background_color[3];
+    const volatile int *cancel;  /* not 0: stop soon; what was reached stays in the film [never] */
+    void (*progress)(const kiln_progress *, void *user); /* from the calling thread, about ten times a second */
+    void *progress_user;
+    uint32_t batch_size;         /* for tests: paths that advance together [1024] */
+    uint64_t tile_shuffle;       /* for tests: another order of tiles, same bits [none] */
+} kiln_render_options;
+
+#define KILN_DEPTH_ZERO UINT32_MAX
+
+/* Samples that were left out, by cause: identifier, machine-readable name. */
+#define KILN_DISCARDS(X)                                                                                               \
+    X(RAY, "invalid-ray")            /* a ray with a non-finite or zero direction, or a non-finite origin */           \
+    X(RADIANCE, "nonfinite-radiance") /* a sample whose radiance is NaN, infinite or negative */                       \
+    X(OVERFLOW, "film-overflow")     /* a sample too large for the film's fixed point */
+
+typedef enum kiln_discard {
+#define KILN_DISCARD_ENUM(id, name) KILN_DISCARD_##id,
+    KILN_DISCARDS(KILN_DISCARD_ENUM)
+#undef KILN_DISCARD_ENUM
+        KILN_DISCARD_COUNT
+} kiln_discard;
+
+typedef struct kiln_render_stats {
+    kiln_stop stop;
+    uint32_t spp;
+    double seconds;
+    uint64_t camera_rays, bounce_rays, shadow_rays;
+    uint64_t discarded[KILN_DISCARD_COUNT];
+    uint32_t discarded_pixel[KILN_DISCARD_COUNT][2]; /* the first in reading order, where discarded > 0 */
+    double lost_energy; /* estimated share of the picture's energy that the depth limit cut; < 0: unknown */
+} kiln_render_stats;
+
+/* Adds samples to film until a stop rule holds. On failure or cancellation the film keeps what it has. */
+KILN_API bool kiln_render(const kiln_renderer *, const kiln_render_options *, kiln_film *film, kiln_render_stats *stats,
+                          kiln_report *);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
