@@ -4,7 +4,8 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { ALIGNMENT = 64, BLOCK_BYTES = 64 * 1024, HUGE_PAGE = 2 * 1024 * 1024 };
+/* Blocks grow from BLOCK_MIN with the arena, so that ten thousand small arenas (one per mesh) stay small. */
+enum { ALIGNMENT = 64, BLOCK_MIN = 1024, BLOCK_MAX = 64 * 1024, HUGE_PAGE = 2 * 1024 * 1024 };
 
 struct kiln_arena_block {
     kiln_arena_block *next;
@@ -14,14 +15,15 @@ struct kiln_arena_block {
 
 static kiln_arena_block *add_block(kiln_arena *arena, size_t bytes) {
     kiln_arena_block *block = malloc(sizeof *block);
-    size_t size = bytes > BLOCK_BYTES ? bytes : BLOCK_BYTES;
+    size_t usual = arena->bytes < BLOCK_MIN ? BLOCK_MIN : arena->bytes > BLOCK_MAX ? BLOCK_MAX : arena->bytes;
+    size_t size = bytes > usual ? bytes : usual;
     char *data = block ? aligned_array(size, 1) : NULL;
     if (!data) {
         free(block);
         return NULL;
     }
     /* A block made for one large array goes behind the current one, whose rest stays in use. */
-    bool behind = bytes > BLOCK_BYTES / 2 && arena->blocks;
+    bool behind = bytes > usual / 2 && arena->blocks;
     *block = (kiln_arena_block){behind ? arena->blocks->next : arena->blocks, 0, size, data};
     if (behind) arena->blocks->next = block;
     else arena->blocks = block;

@@ -1,0 +1,60 @@
+/* scene/scene.h: what a Scene holds, for the modules that fill, refine and read it. Handles are 1-based: object id
+ * lies in slot id − 1. Everything was checked when it was added (kiln/scene.h): references are in range, numbers are
+ * finite, texture transforms are explicit. Pointers into the scene are borrowed; before the commit the next object
+ * of the same sort may move them. */
+#ifndef KILN_SCENE_SCENE_H
+#define KILN_SCENE_SCENE_H
+
+#include "base/arena.h"
+#include "base/mat.h"
+#include "base/report.h"
+#include "kiln/scene.h"
+#include "scene/mesh.h"
+
+typedef struct kiln_instance {
+    const char *name;
+    kiln_id mesh;
+    uint32_t time_count; /* ≥ 1 */
+    const mat4 *transforms;
+    bool flat; /* at some time the transform is singular: no inverse */
+} kiln_instance;
+
+struct kiln_scene {
+    kiln_arena arena; /* of everything but the arrays below and the meshes */
+    kiln_image_desc *images;
+    kiln_material *materials;
+    kiln_mesh *meshes;
+    kiln_instance *instances;
+    kiln_light *lights;
+    kiln_camera *cameras;
+    uint32_t image_count, material_count, mesh_count, instance_count, light_count, camera_count;
+    kiln_environment environment;
+    bool has_environment;
+    kiln_bounds bounds;
+    bool committed;
+    kiln_material default_material;
+    const kiln_where *where; /* prefix of the places in messages, set by an importer; NULL: none */
+};
+
+/* Borrowed; the caller knows that the id is valid. Material 0 is the default material. */
+static inline const kiln_image_desc *scene_image(const kiln_scene *s, kiln_id id) { return &s->images[id - 1]; }
+static inline const kiln_material *scene_material(const kiln_scene *s, kiln_id id) {
+    return id ? &s->materials[id - 1] : &s->default_material;
+}
+static inline const kiln_mesh *scene_mesh(const kiln_scene *s, kiln_id id) { return &s->meshes[id - 1]; }
+static inline const kiln_instance *scene_instance(const kiln_scene *s, kiln_id id) { return &s->instances[id - 1]; }
+static inline const kiln_light *scene_light(const kiln_scene *s, kiln_id id) { return &s->lights[id - 1]; }
+
+/* What stands in front of every place in the messages of the adders: the file that is being read, say. The chain must
+ * live until it is replaced; NULL: nothing. */
+static inline void scene_locate(kiln_scene *s, const kiln_where *where) { s->where = where; }
+
+/* The domains of a camera, for one that never enters a scene too; false is an error. */
+bool camera_check(kiln_camera *, const kiln_where *, kiln_report *);
+
+/* Replaces a mesh of an uncommitted scene; its arrays are checked as kiln_scene_add_mesh does, but not copied: they
+ * must lie in arena, which the mesh takes over (on failure it is freed and the old mesh stays). Threads may replace
+ * different meshes at the same time. */
+bool scene_replace_mesh(kiln_scene *, kiln_id, kiln_arena *arena, const kiln_mesh_desc *, kiln_report *);
+
+#endif
