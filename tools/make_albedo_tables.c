@@ -1,0 +1,124 @@
+/* tools/make_albedo_tables.c: prints render/bsdf/albedo_table.c: directional albedos of GGX interfaces, in double.
+ *
+ *     cc -O2 -I. tools/make_albedo_tables.c -lm -o make_albedo_tables && ./make_albedo_tables > render/bsdf/albedo_table.c
+ *
+ * Each entry is the mean of single-scattering weights over visible normals (Heitz 2018), on a rank-1 lattice. */
+#include <math.h>
+#include <stdio.h>
+
+#include "render/bsdf/albedo.h"
+
+typedef struct { double x, y, z; } dir;
+
+static double dot(dir a, dir b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static dir scaled(dir a, double s) { return (dir){a.x * s, a.y * s, a.z * s}; }
+static dir plus(dir a, dir b) { return (dir){a.x + b.x, a.y + b.y, a.z + b.z}; }
+static dir unit(dir a) { return scaled(a, 1 / sqrt(dot(a, a))); }
+
+/* Smith's Lambda of GGX (Heitz 2014, eq. 72). */
+static double lambda(dir v, double alpha) {
+    double tan2 = (v.x * v.x + v.y * v.y) / (v.z * v.z);
+    return 0.5 * (sqrt(1 + alpha * alpha * tan2) - 1);
+}
+
+/* Visible normal by spherical caps (Dupuy and Benyoub 2023). */
+static dir visible_normal(dir wo, double alpha, double u, double v) {
+    dir s = unit((dir){wo.x * alpha, wo.y * alpha, wo.z});
+    double phi = 2 * M_PI * u, z = (1 - v) * (1 + s.z) - s.z, r = sqrt(fmax(0, 1 - z * z));
+    dir h = plus((dir){r * cos(phi), r * sin(phi), z}, s);
+    return unit((dir){h.x * alpha, h.y * alpha, fmax(h.z, 0)});
+}
+
+static double fresnel(double c, double eta) {
+    double g2 = eta * eta - 1 + c * c;
+    if (g2 < 0) return 1;
+    double g = sqrt(g2);
+    if (g + c == 0) return 1;
+    double a = (g - c) / (g + c), b = (c * (g + c) - 1) / (c * (g - c) + 1);
+    return 0.5 * a * a * (1 + b * b);
+}
+
+typedef enum { FULL, SCHLICK, INTERFACE } what;
+
+/* The weight of one visible normal: how much leaves after one scattering event. */
+static double weight(what w, dir wo, dir h, double alpha, double eta) {
+    double c = dot(wo, h), lo = lambda(wo, alpha);
+    dir wr = plus(scaled(h, 2 * c), scaled(wo, -1));
+    double reflected = wr.z > 0 ? (1 + lo) / (1 + lo + lambda(wr, alpha)) : 0;
+    if (w == FULL) return reflected;
+    if (w == SCHLICK) return reflected * pow(1 - c, 5);
+    double f = fresnel(c, eta), k = 1 - (1 - c * c) / (eta * eta);
+    if (k < 0) return reflected * f;
+    dir wt = plus(scaled(wo, -1 / eta), scaled(h, c / eta - sqrt(k)));
+    /* The two sides of a refraction shadow independently (Walter et al. 2007). */
+    double transmitted = wt.z < 0 ? 1 / (1 + lambda(wt, alpha)) : 0;
+    return reflected * f + transmitted * (1 - f);
+}
+
+static double albedo(what w, double mu, double alpha, double eta) {
+    enum { N = 1 << 14 };
+    mu = fmax(mu, 1e-7);
+    dir wo = {sqrt(1 - mu * mu), 0, mu};
+    double sum = 0;
+    for (int i = 0; i < N; i++) {
+        double u = (i + 0.5) / N, v = fmod(0.5 + i * 0.6180339887498949, 1.0);
+        sum += weight(w, wo, visible_normal(wo, alpha, v, u), alpha, eta);
+    }
+    return sum / N;
+}
+
+static double grazing_mu(int i, double alpha) {
+    double s = pow((double)i / (ALBEDO_GRAZING - 1), 2);
+    return alpha * s / (1 + alpha - s);
+}
+static double shape_mu(int i) { return pow((double)i / (ALBEDO_SHAPE - 1), 2); }
+
+static void put(double value) {
+    static int column;
+    printf("%s%.5ff,%s", column % 12 ? " " : "    ", value, column % 12 == 11 ? "\n" : "");
+    column++;
+}
+
+static void print_rows(const char *name, what w, int n, const char *size) {
+    printf("const float %s[%s] = {\n", name, size);
+    for (int j = 0; j < ALBEDO_ROUGHNESS; j++)
+        for (int i = 0; i < n; i++) {
+            double a = albedo_row_alpha(j), mu = w == SCHLICK ? shape_mu(i) : grazing_mu(i, a);
+            put(albedo(w, mu, a, 1) / (w == SCHLICK ? albedo(FULL, mu, a, 1) : 1));
+        }
+    printf("};\n\n");
+}
+
+/* 2 ∫ E mu dmu */
+static void print_means(const char *name, what w) {
+    printf("const float %s[ALBEDO_ROUGHNESS] = {\n", name);
+    for (int j = 0; j < ALBEDO_ROUGHNESS; j++) {
+        enum { N = 256 };
+        double sum = 0;
+        for (int i = 0; i < N; i++) {
+            double t = (i + 0.5) / N, mu = t * t; /* dmu = 2 t dt */
+            sum += albedo(w, mu, albedo_row_alpha(j), 1) * 2 * mu * 2 * t / N;
+        }
+        put(sum);
+    }
+    printf("};\n\n");
+}
+
+int main(void) {
+    printf("/* Printed by tools/make_albedo_tables.c. */\n#include \"render/bsdf/albedo.h\"\n\n");
+    print_rows("albedo_full_table", FULL, ALBEDO_GRAZING, "ALBEDO_SLICE");
+    print_means("albedo_full_mean_table", FULL);
+    print_rows("albedo_schlick_table", SCHLICK, ALBEDO_SHAPE, "ALBEDO_SHAPE * ALBEDO_ROUGHNESS");
+    print_means("albedo_schlick_mean_table", SCHLICK);
+    printf("const float albedo_interface_table[ALBEDO_SLICE * ALBEDO_IORS] = {\n");
+    for (int k = 0; k < ALBEDO_IORS; k++) {
+        double s = 2.0 * k / (ALBEDO_IORS - 1) - 1, x = ALBEDO_X_MAX * s * fabs(s);
+        for (int j = 0; j < ALBEDO_ROUGHNESS; j++)
+            for (int i = 0; i < ALBEDO_GRAZING; i++) {
+                double a = albedo_row_alpha(j);
+                put(albedo(INTERFACE, grazing_mu(i, a), a, (1 + x) / (1 - x)));
+            }
+    }
+    printf("};\n");
+    return 0;
+}
