@@ -50,7 +50,7 @@ typedef struct ring {
     uint32_t *next, *previous;
     bool *reflex; /* the polygon does not turn left here */
     uint32_t count, left, reflex_left;
-    uint64_t budget; /* containment tests that may still be made, in the whole mesh */
+    uint64_t budget; /* steps that may still be made, in the whole mesh */
 } ring;
 
 static double turn(point2 a, point2 b, point2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
@@ -61,6 +61,9 @@ static void classify(ring *r, uint32_t i) {
     r->reflex[i] = reflex;
 }
 
+/* Counts one step of work; false when too much was done. */
+static bool spend(ring *r) { return r->budget && r->budget--; }
+
 /* The triangle at i lies inside the polygon: it turns left and holds no reflex corner. A corner that coincides with
  * one of the triangle's does not count: bridges to holes pass the same point twice. */
 static bool is_ear(ring *r, uint32_t i) {
@@ -68,8 +71,7 @@ static bool is_ear(ring *r, uint32_t i) {
     uint32_t before = r->previous[i], after = r->next[i];
     point2 a = r->points[before], b = r->points[i], c = r->points[after];
     for (uint32_t j = r->next[after]; j != before && r->reflex_left; j = r->next[j]) {
-        if (!r->budget) return true;
-        r->budget--;
+        if (!spend(r)) return true;
         if (!r->reflex[j]) continue;
         point2 p = r->points[j];
         bool same = (p.x == a.x && p.y == a.y) || (p.x == b.x && p.y == b.y) || (p.x == c.x && p.y == c.y);
@@ -93,7 +95,7 @@ static void cut(ring *r, uint32_t i) {
 static void clip_ears(ring *r, uint32_t first, uint32_t *corners) {
     uint32_t i = 0, tried = 0;
     while (r->left > 3) {
-        if (!is_ear(r, i) && tried < r->left) {
+        if (!is_ear(r, i) && tried < r->left && spend(r)) {
             i = r->next[i];
             tried++;
             continue;
@@ -152,9 +154,9 @@ static void split_face(const kiln_mesh *m, uint32_t f, ring *r, uint32_t *corner
 bool mesh_triangulate(const kiln_mesh *m, uint32_t *corners, uint32_t *faces) {
     uint32_t largest = largest_face(m);
     size_t room = largest > 4 ? largest : 1;
-    /* A second or two: n² tests cut any polygon of 30,000 corners. What is left of a larger hostile one is cut as it
-     * comes. */
-    ring r = {.budget = (uint64_t)1 << 30,
+    /* A fraction of a second: n² steps cut any polygon of 8,000 corners. What is left of a larger hostile one is cut
+     * as it comes. */
+    ring r = {.budget = (uint64_t)1 << 26,
               .points = array_alloc(room, sizeof *r.points),
               .next = array_alloc(room, sizeof *r.next),
               .previous = array_alloc(room, sizeof *r.previous),

@@ -1,0 +1,122 @@
+#include "tests/scene/support.h"
+
+#include <math.h>
+
+#include "scene/material.h"
+
+static void add_pixel(fixture *f) {
+    const uint8_t pixel = 0;
+    kiln_image_desc image = {.pixels = &pixel, .width = 1, .height = 1, .channels = 1};
+    assert_true(kiln_scene_add_image(f->scene, &image, NULL, f->report));
+}
+
+/* glTF 2.0, material: the defaults of every property. */
+static void defaults_are_gltfs(void **state) {
+    fixture *f = *state;
+    const kiln_material *m = scene_material(f->scene, 0);
+    assert_true(m->base_color.value[1] == 1 && m->metallic.value == 1 && m->roughness.value == 1);
+    assert_true(m->ior == 1.5f && m->alpha_cutoff == 0.5f && m->specular.value == 1 && m->emission.value[0] == 0);
+    assert_true(m->layers == 0 && m->alpha_mode == KILN_ALPHA_OPAQUE && !m->double_sided);
+    kiln_material again = *m;
+    assert_true(kiln_scene_add_material(f->scene, &again, NULL, f->report));
+    assert_int_equal(kiln_report_size(f->report), 0);
+}
+
+static void factors_are_brought_into_their_domain(void **state) {
+    fixture *f = *state;
+    kiln_material m = kiln_material_default();
+    m.name = "odd";
+    m.base_color.value[0] = 1.5f;
+    m.metallic.value = -1;
+    m.roughness.value = NAN;
+    m.emission.value[2] = INFINITY;
+    m.ior = .5f;
+    m.attenuation_distance = INFINITY;
+    m.attenuation_color[1] = 2;
+    m.normal.value = -3;
+    assert_true(kiln_scene_add_material(f->scene, &m, NULL, f->report));
+    const kiln_material *k = scene_material(f->scene, 1);
+    assert_true(k->base_color.value[0] == 1 && k->metallic.value == 0 && k->roughness.value == 1);
+    assert_true(k->emission.value[2] == 0 && k->ior == 1 && k->attenuation_distance == 0);
+    assert_true(k->attenuation_color[1] == 1 && k->normal.value == -3);
+    assert_true(says(f->report, KILN_WARNING, "material 'odd': base_color", "the factor is 1.5: 1 is used"));
+    assert_true(says(f->report, KILN_WARNING, "material 'odd': roughness", "the factor is not a number: 1 is used"));
+    assert_true(says(f->report, KILN_WARNING, "material 'odd': emission", "the factor is not a number: 0 is used"));
+    assert_true(says(f->report, KILN_WARNING, "material 'odd'", "ior is 0.5: 1 is used"));
+    assert_int_equal(kiln_report_count(f->report, KILN_WARNING), 6);
+}
+
+static void some_values_outside_the_unit_are_meant(void **state) {
+    fixture *f = *state;
+    kiln_material m = kiln_material_default();
+    m.ior = 0; /* infinity */
+    m.layers = KILN_LAYER_UNLIT;
+    m.base_color.value[0] = 12; /* radiance */
+    m.specular_color.value[0] = 3;
+    m.emission.value[0] = 1e6f;
+    assert_true(kiln_scene_add_material(f->scene, &m, NULL, f->report));
+    const kiln_material *k = scene_material(f->scene, 1);
+    assert_true(k->ior == 0 && k->base_color.value[0] == 12 && k->specular_color.value[0] == 3 && k->emission.value[0] == 1e6f);
+    assert_int_equal(kiln_report_size(f->report), 0);
+}
+
+static void textures_become_explicit(void **state) {
+    fixture *f = *state;
+    add_pixel(f);
+    kiln_material m = kiln_material_default();
+    m.base_color.texture.image = 1;
+    m.normal.texture = (kiln_texture){.image = 1, .transform = {NAN, 0, 0, 0, 1, 0}};
+    m.emission.texture = (kiln_texture){.image = 1, .transform = {2, 0, 0, 0, 3, 0}};
+    assert_true(kiln_scene_add_material(f->scene, &m, NULL, f->report));
+    const kiln_material *k = scene_material(f->scene, 1);
+    const float identity[6] = {1, 0, 0, 0, 1, 0}, scaled[6] = {2, 0, 0, 0, 3, 0};
+    assert_memory_equal(k->base_color.texture.transform, identity, sizeof identity);
+    assert_memory_equal(k->normal.texture.transform, identity, sizeof identity);
+    assert_memory_equal(k->emission.texture.transform, scaled, sizeof scaled);
+    assert_true(says(f->report, KILN_WARNING, "material 'default': normal", "the texture transform is not finite"));
+    const kiln_texture *used[KILN_MATERIAL_TEXTURES];
+    assert_int_equal(material_textures(k, used), 3);
+    assert_ptr_equal(used[0], &k->base_color.texture);
+    assert_ptr_equal(used[2], &k->emission.texture);
+}
+
+static void references_and_choices_are_checked(void **state) {
+    fixture *f = *state;
+    add_pixel(f);
+    struct {
+        kiln_texture texture;
+        const char *what;
+    } bad[] = {
+        {{.image = 2}, "image 2 does not exist (the scene has 1)"},
+        {{.image = 1, .wrap_u = (kiln_wrap)3}, "wrap mode 3"},
+        {{.image = 1, .wrap_v = (kiln_wrap)3}, "wrap mode 3"},
+        {{.image = 1, .filter = (kiln_filter)2}, "filter 2"},
+        {{.image = 1, .transfer = KILN_TRANSFER_COUNT}, "transfer 3"},
+        {{.image = 1, .channel = 4}, "channel 4"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        kiln_material m = kiln_material_default();
+        m.thickness.texture = bad[i].texture;
+        assert_false(kiln_scene_add_material(f->scene, &m, NULL, f->report));
+        assert_true(says(f->report, KILN_ERROR, "material 'default': thickness", bad[i].what));
+    }
+    kiln_material m = kiln_material_default();
+    m.layers = 1u << 30;
+    assert_false(kiln_scene_add_material(f->scene, &m, NULL, f->report));
+    assert_true(says(f->report, KILN_ERROR, "material 'default'", "layers 0x40000000 are unknown"));
+    m = kiln_material_default();
+    m.alpha_mode = (kiln_alpha_mode)3;
+    assert_false(kiln_scene_add_material(f->scene, &m, NULL, f->report));
+    assert_int_equal(f->scene->material_count, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        SCENE_TEST(defaults_are_gltfs),
+        SCENE_TEST(factors_are_brought_into_their_domain),
+        SCENE_TEST(some_values_outside_the_unit_are_meant),
+        SCENE_TEST(textures_become_explicit),
+        SCENE_TEST(references_and_choices_are_checked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
