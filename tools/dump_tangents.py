@@ -15,6 +15,7 @@ import struct
 import sys
 
 import bpy
+import mathutils
 
 
 def import_glb(path):
@@ -65,8 +66,14 @@ def mirrored_mesh():
     layer = mesh.uv_layers.new(name="UVMap")
     for loop, uv in zip(layer.data, (uv for f in faces for _, uv in f)):
         loop.uv = uv
+    # Free normals, as an importer brings them: smooth, but for some faces.
+    normals = mesh.attributes.new("custom_normal", "FLOAT_VECTOR", "CORNER")
     for k, polygon in enumerate(mesh.polygons):
-        polygon.use_smooth = k % 23 != 0
+        for index in polygon.loop_indices:
+            x, y, z = mesh.vertices[mesh.loops[index].vertex_index].co
+            ring = math.hypot(x, y)
+            n = mathutils.Vector((x * (1 - 1 / ring), y * (1 - 1 / ring), z)).normalized()
+            normals.data[index].vector = polygon.normal if k % 23 == 0 else n
     return mesh
 
 

@@ -40,13 +40,17 @@ static bool count_corners(const kiln_mesh_desc *mesh, uint32_t *corner_count, co
     uint64_t corners = 0;
     for (uint32_t f = 0; f < mesh->face_count; f++) {
         uint32_t size = face_size(mesh, f);
-        if (size < 3) return report_error(report, KILN_CODE_GEOMETRY, where, "remove the face", "face %u has %u corners", f, size);
+        if (size < 3)
+            return report_error(report, KILN_CODE_GEOMETRY, where, "remove the face", "face %u has %u corners", f,
+                                size);
         if (corners + size > UINT32_MAX)
-            return report_error(report, KILN_CODE_LIMIT, where, "split the mesh", "more than %u corners in one mesh", UINT32_MAX);
+            return report_error(report, KILN_CODE_LIMIT, where, "split the mesh", "more than %u corners in one mesh",
+                                UINT32_MAX);
         for (uint32_t i = 0; i < size; i++)
             if (mesh->face_vertices[corners + i] >= mesh->vertex_count)
-                return report_error(report, KILN_CODE_RANGE, where, "repair the indices", "face %u refers to vertex %u of %u",
-                                    f, mesh->face_vertices[corners + i], mesh->vertex_count);
+                return report_error(report, KILN_CODE_RANGE, where, "repair the indices",
+                                    "face %u refers to vertex %u of %u", f, mesh->face_vertices[corners + i],
+                                    mesh->vertex_count);
         corners += size;
     }
     *corner_count = (uint32_t)corners;
