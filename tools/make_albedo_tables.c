@@ -57,7 +57,7 @@ static double weight(what w, dir wo, dir h, double alpha, double eta) {
 
 static double albedo(what w, double mu, double alpha, double eta) {
     enum { N = 1 << 14 };
-    mu = fmax(mu, 1e-7);
+    mu = fmin(fmax(mu, 1e-7), 1);
     dir wo = {sqrt(1 - mu * mu), 0, mu};
     double sum = 0;
     for (int i = 0; i < N; i++) {

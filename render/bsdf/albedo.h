@@ -1,0 +1,94 @@
+/* render/bsdf/albedo.h: directional albedos of GGX interfaces, from tables: what energy compensation needs.
+ *
+ * A table runs over a coordinate of cos θ and over perceptual roughness, bilinear. Two coordinates serve:
+ * near grazing everything happens at cos θ ~ alpha, hence t = sqrt(cos θ (1 + alpha)/(cos θ + alpha)); the Fresnel
+ * term's own shape wants sqrt(cos θ). Means are
+ * cosine-weighted over the hemisphere. */
+#ifndef KILN_RENDER_BSDF_ALBEDO_H
+#define KILN_RENDER_BSDF_ALBEDO_H
+
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { ALBEDO_GRAZING = 24, ALBEDO_SHAPE = 16, ALBEDO_ROUGHNESS = 16, ALBEDO_IORS = 64 };
+enum { ALBEDO_SLICE = ALBEDO_GRAZING * ALBEDO_ROUGHNESS };
+/* Slices of the interface table stand at x = ±ALBEDO_X_MAX k², x = (η − 1)/(η + 1): denser where η is near 1. */
+#define ALBEDO_X_MAX 0.9f
+
+/* With F = 1: what one scattering event returns; t by roughness, and its mean by roughness. */
+extern const float albedo_full_table[ALBEDO_SLICE];
+extern const float albedo_full_mean_table[ALBEDO_ROUGHNESS];
+/* The share of it that goes with Schlick's (1 − cos)^5; sqrt(cos θ) by roughness, and the mean of the product. */
+extern const float albedo_schlick_table[ALBEDO_SHAPE * ALBEDO_ROUGHNESS];
+extern const float albedo_schlick_mean_table[ALBEDO_ROUGHNESS];
+/* Reflection and refraction together at a dielectric interface: t by roughness by η of the far side over wo's. */
+extern const float albedo_interface_table[ALBEDO_SLICE * ALBEDO_IORS];
+
+/* GGX alpha of a row. Roughness 0 is a mirror; its row is that of a roughness near enough to have a limit. */
+static inline double albedo_row_alpha(int row) {
+    double roughness = row ? (double)row / (ALBEDO_ROUGHNESS - 1) : 0.01;
+    return roughness * roughness;
+}
+
+/* Where a value lies between two nodes of n. */
+typedef struct albedo_node { int32_t index; float fraction; } albedo_node;
+
+static inline albedo_node albedo_node_of(float unit, int32_t n) {
+    float f = unit * (float)(n - 1);
+    f = f > 0.0f ? f : 0.0f; /* NaN too */
+    f = f < (float)(n - 1) ? f : (float)(n - 1);
+    int32_t i = (int32_t)f;
+    i = i < n - 2 ? i : n - 2;
+    return (albedo_node){i, f - (float)i};
+}
+
+static inline float albedo_bilinear(const float *table, int32_t columns, albedo_node column, albedo_node row) {
+    int32_t at = row.index * columns + column.index;
+    float a = table[at] + column.fraction * (table[at + 1] - table[at]);
+    float b = table[at + columns] + column.fraction * (table[at + columns + 1] - table[at + columns]);
+    return a + row.fraction * (b - a);
+}
+
+static inline float albedo_linear(const float *table, albedo_node node) {
+    return table[node.index] + node.fraction * (table[node.index + 1] - table[node.index]);
+}
+
+/* mu = cos θ ≥ 0 */
+static inline float albedo_grazing_coordinate(float mu, float alpha) {
+    return sqrtf(mu * (1.0f + alpha) / (mu + alpha + 1e-30f)); /* alpha 0 at mu 0 */
+}
+
+/* One row of a material's roughness serves all look-ups of a shading point. */
+static inline albedo_node albedo_roughness_node(float roughness) { return albedo_node_of(roughness, ALBEDO_ROUGHNESS); }
+
+static inline float albedo_full(float mu, float alpha, albedo_node roughness) {
+    return albedo_bilinear(albedo_full_table, ALBEDO_GRAZING,
+                           albedo_node_of(albedo_grazing_coordinate(mu, alpha), ALBEDO_GRAZING), roughness);
+}
+static inline float albedo_full_mean(albedo_node roughness) { return albedo_linear(albedo_full_mean_table, roughness); }
+
+static inline float albedo_schlick_share(float mu, albedo_node roughness) {
+    return albedo_bilinear(albedo_schlick_table, ALBEDO_SHAPE, albedo_node_of(sqrtf(mu), ALBEDO_SHAPE), roughness);
+}
+static inline float albedo_schlick_mean(albedo_node roughness) {
+    return albedo_linear(albedo_schlick_mean_table, roughness);
+}
+
+/* Slices of the interface table at the η of a material, one for each side, in one array: a slice is its values, then
+ * their mean by roughness. `slice` is its first element's index. */
+enum { ALBEDO_SLICE_FLOATS = ALBEDO_SLICE + ALBEDO_ROUGHNESS };
+
+void albedo_make_slice(float eta, float slice[ALBEDO_SLICE_FLOATS]);
+
+static inline float albedo_interface(const float *slices, int32_t slice, float mu, float alpha, albedo_node roughness) {
+    albedo_node column = albedo_node_of(albedo_grazing_coordinate(mu, alpha), ALBEDO_GRAZING);
+    column.index += slice;
+    return albedo_bilinear(slices, ALBEDO_GRAZING, column, roughness);
+}
+static inline float albedo_interface_mean(const float *slices, int32_t slice, albedo_node roughness) {
+    roughness.index += slice + ALBEDO_SLICE;
+    return albedo_linear(slices, roughness);
+}
+
+#endif

@@ -1,0 +1,21 @@
+/* render/bsdf/frame.h: an orthonormal frame around a normal. */
+#ifndef KILN_RENDER_BSDF_FRAME_H
+#define KILN_RENDER_BSDF_FRAME_H
+
+#include "base/kernel.h"
+#include "base/vec.h"
+
+typedef struct frame { vec3 x, y, z; } frame;
+
+/* Duff et al. 2017, "Building an Orthonormal Basis, Revisited", JCGT 6(1). z is of unit length. */
+KERNEL frame frame_make(vec3 z) {
+    float sign = copysignf(1.0f, z.z), a = -1.0f / (sign + z.z), b = z.x * z.y * a;
+    return (frame){v3(1.0f + sign * z.x * z.x * a, sign * b, -sign * z.x), v3(b, sign + z.y * z.y * a, -z.y), z};
+}
+KERNEL vec3 frame_to_local(const frame *f, vec3 v) { return v3(v3_dot(f->x, v), v3_dot(f->y, v), v3_dot(f->z, v)); }
+KERNEL vec3 frame_to_world(const frame *f, vec3 v) {
+    return v3(f->x.x * v.x + f->y.x * v.y + f->z.x * v.z, f->x.y * v.x + f->y.y * v.y + f->z.y * v.z,
+              f->x.z * v.x + f->y.z * v.y + f->z.z * v.z);
+}
+
+#endif

@@ -1,0 +1,28 @@
+/* render/bsdf/fresnel.h: how much a smooth interface reflects. */
+#ifndef KILN_RENDER_BSDF_FRESNEL_H
+#define KILN_RENDER_BSDF_FRESNEL_H
+
+#include "base/kernel.h"
+#include "base/vec.h"
+
+/* (1 − c)^5, Schlick 1994 */
+KERNEL float fresnel_schlick_weight(float c) {
+    float m = 1.0f - c;
+    m = m > 0.0f ? m : 0.0f;
+    float m2 = m * m;
+    return m2 * m2 * m;
+}
+
+/* Unpolarised reflectance of a dielectric: c = cos of the incident angle ≥ 0, eta = n_far / n_near.
+ * F = ½ ((g − c)/(g + c))² (1 + ((c (g + c) − 1)/(c (g − c) + 1))²), g² = η² − 1 + c² (Cook and Torrance 1982);
+ * 1 under total internal reflection. */
+KERNEL float fresnel_dielectric(float c, float eta) {
+    float g2 = eta * eta - 1.0f + c * c;
+    float g = sqrtf(g2 > 0.0f ? g2 : 0.0f);
+    float a = (g - c) / (g + c + 1e-30f); /* g = c = 0 only at eta = 1, grazing: then a is 0 */
+    float b = (c * (g + c) - 1.0f) / (c * (g - c) + 1.0f); /* ≥ 1 − c² + c g: 0 only where g2 < 0 */
+    float f = 0.5f * a * a * (1.0f + b * b);
+    return g2 > 0.0f ? f : 1.0f;
+}
+
+#endif
