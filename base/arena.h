@@ -6,6 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct kiln_arena_block kiln_arena_block;
 
 /* Zero-initialised is empty. Not thread-safe. */
@@ -36,4 +40,7 @@ bool array_resize(void **array, size_t count, size_t size);
 /* count × size bytes, zeroed, at 64-byte alignment, with huge pages asked for where they pay. Free with free(). */
 void *aligned_array(size_t count, size_t size);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -4,6 +4,10 @@
 
 #include "kiln/report.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Where we are in the user's file: a chain kept on the C stack, innermost first. The root names the file. */
 typedef struct kiln_where {
     const struct kiln_where *parent;
@@ -36,4 +40,7 @@ void report_note(kiln_report *report, kiln_code code, const kiln_where *where, c
 /* report_error(…, "out of memory while %s", doing). */
 bool report_no_memory(kiln_report *report, const char *doing);
 
+#ifdef __cplusplus
+}
+#endif
 #endif
