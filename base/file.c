@@ -149,6 +149,21 @@ bool file_write(kiln_writer *writer, const void *data, size_t size) {
     return !writer->error;
 }
 
+bool file_write_at(kiln_writer *writer, const void *data, size_t size, uint64_t offset) {
+    const char *at = data;
+    while (size > 0 && !writer->error) {
+        ssize_t put = pwrite(writer->fd, at, size, (off_t)offset);
+        if (put < 0 && errno == EINTR) continue;
+        if (put < 0) writer->error = errno;
+        else {
+            at += put;
+            offset += (uint64_t)put;
+            size -= (size_t)put;
+        }
+    }
+    return !writer->error;
+}
+
 /* The rename itself must reach the disk too. */
 static void flush_folder(const char *path) {
     const char *slash = strrchr(path, '/');

@@ -22,6 +22,8 @@ kiln_writer *file_create(const char *path, kiln_report *report); /* NULL: report
 /* Where to write before file_commit: a name to hand to a library that opens files itself. */
 const char *file_temporary_name(const kiln_writer *);
 bool file_write(kiln_writer *, const void *data, size_t size);
+/* At a place counted from the start, without moving where file_write goes on. Not for standard output. */
+bool file_write_at(kiln_writer *, const void *data, size_t size, uint64_t offset);
 /* Renames into place; false: reported, and nothing is left behind. Frees the writer either way. */
 bool file_commit(kiln_writer *, kiln_report *report);
 void file_discard(kiln_writer *); /* removes the temporary; NULL is fine */

@@ -13,8 +13,8 @@ typedef struct kiln_image {
 } kiln_image;
 
 typedef enum kiln_image_kind {
-    KILN_IMAGE_UNKNOWN, KILN_IMAGE_PNG, KILN_IMAGE_JPEG, KILN_IMAGE_WEBP, KILN_IMAGE_TIFF, KILN_IMAGE_EXR, KILN_IMAGE_HDR,
-    KILN_IMAGE_KTX2 /* recognised, to name it in a message; not decoded */
+    KILN_IMAGE_UNKNOWN, KILN_IMAGE_PNG, KILN_IMAGE_JPEG, KILN_IMAGE_WEBP, KILN_IMAGE_TIFF, KILN_IMAGE_EXR,
+    KILN_IMAGE_HDR, KILN_IMAGE_KTX2 /* recognised, to name it in a message; not decoded */
 } kiln_image_kind;
 
 typedef struct kiln_image_info {
@@ -31,7 +31,9 @@ kiln_image_kind image_kind(const void *bytes, size_t size);
 bool image_probe(const void *bytes, size_t size, kiln_image_info *, const kiln_where *where, kiln_report *);
 
 /* Decodes a whole file. The result needs at most limit bytes (0: 8 GiB), checked before allocating. PNG and TIFF of
- * 16 bits stay 16 bits; palettes and 1, 2, 4 bits become 8; EXR and HDR become F32; JPEG in CMYK becomes RGB. */
+ * 16 bits stay 16 bits; palettes and 1, 2, 4 bits become 8; EXR, HDR and TIFF of floats become F32; JPEG in CMYK becomes
+ * RGB. An EXR file gives its display window, zero where it has no data. Colour profiles and gamma, and the orientation
+ * in a JPEG, are ignored, as glTF asks. A damaged JPEG that still gives a picture is a warning. */
 bool image_decode(const void *bytes, size_t size, uint64_t limit, kiln_image *, const kiln_where *where, kiln_report *);
 
 bool image_alloc(kiln_image *, uint32_t width, uint32_t height, uint32_t channels, kiln_pixel_format, kiln_report *);
@@ -40,10 +42,11 @@ size_t image_bytes(const kiln_image *);
 
 /* How a display-referred file is tagged and compressed. */
 typedef struct kiln_image_write_options {
-    bool srgb;           /* PNG: sRGB and cICP chunks; TIFF, JPEG and WebP: an sRGB ICC profile where it is short to make,
-                            else nothing */
+    bool srgb; /* PNG: sRGB and cICP chunks; TIFF and JPEG: an sRGB ICC profile; WebP: nothing, which means sRGB */
+    uint8_t cicp_primaries, cicp_transfer; /* unless srgb, PNG's cICP chunk by the numbers of ITU-T H.273 (Display P3:
+                                              12, 13; Rec.1886: 1, 1); 0: none */
     uint32_t bits;       /* PNG, TIFF: 8 or 16; 0: 8 */
-    uint32_t quality;    /* JPEG, WebP: 1 … 100; 0: 95 */
+    uint32_t quality;    /* JPEG, WebP: 1 … 100; 0: 95; a WebP of 100 is lossless */
     const char *const *text; /* pairs keyword, value for PNG tEXt/iTXt and TIFF ImageDescription; may be NULL */
     uint32_t text_count; /* pairs */
 } kiln_image_write_options;
@@ -59,12 +62,14 @@ bool image_write_hdr(const char *path, const kiln_image *, kiln_report *);
 /* One layer of an EXR file. Channel names are "R", or "layer.R". */
 typedef struct kiln_exr_channel {
     const char *name;
-    const float *values; /* first value */
+    const float *values; /* of the first pixel of the data window, whose rows follow one another */
     size_t stride;       /* floats from a pixel to the next */
     bool full;           /* 32 bits; else half, out-of-range values clamped to ±65504 */
 } kiln_exr_channel;
 
-typedef enum kiln_exr_attribute_kind { KILN_EXR_STRING, KILN_EXR_INT, KILN_EXR_FLOAT, KILN_EXR_DOUBLE } kiln_exr_attribute_kind;
+typedef enum kiln_exr_attribute_kind {
+    KILN_EXR_STRING, KILN_EXR_INT, KILN_EXR_FLOAT, KILN_EXR_DOUBLE
+} kiln_exr_attribute_kind;
 typedef struct kiln_exr_attribute {
     const char *name;
     kiln_exr_attribute_kind kind;
