@@ -1,0 +1,140 @@
+#include "render/world/images.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/arena.h"
+#include "base/threads.h"
+#include "image/image.h"
+#include "scene/transfer.h"
+
+static size_t format_bytes(kiln_pixel_format format) {
+    return format == KILN_PIXELS_U8 ? 1 : format == KILN_PIXELS_U16 ? 2 : 4;
+}
+
+/* Grey spreads to RGB and a missing alpha is 1 (glTF 2.0, 3.9.2). */
+#define EXPAND(type, one)                                                                                              \
+    static void expand_##type(const type *from, uint32_t channels, size_t count, type *to) {                           \
+        for (size_t i = 0; i < count; i++, from += channels, to += 4) {                                                \
+            bool grey = channels < 3;                                                                                  \
+            to[0] = from[0];                                                                                           \
+            to[1] = from[grey ? 0 : 1];                                                                                \
+            to[2] = from[grey ? 0 : 2];                                                                                \
+            to[3] = channels == 2 ? from[1] : channels == 4 ? from[3] : (type)(one);                                   \
+        }                                                                                                              \
+    }
+EXPAND(uint8_t, 255)
+EXPAND(uint16_t, 65535)
+EXPAND(float, 1.0f)
+
+static void *expand(const kiln_image *image) {
+    size_t count = (size_t)image->width * image->height;
+    void *rgba = aligned_array(4 * count, format_bytes(image->format));
+    if (!rgba) return NULL;
+    if (image->format == KILN_PIXELS_U8) expand_uint8_t(image->pixels, image->channels, count, rgba);
+    else if (image->format == KILN_PIXELS_U16) expand_uint16_t(image->pixels, image->channels, count, rgba);
+    else expand_float(image->pixels, image->channels, count, rgba);
+    return rgba;
+}
+
+/* Pixels of a description, decoded if they are a file. *owned says whether image_free is due. */
+static bool pixels_of(const kiln_image_desc *desc, kiln_image *image, bool *owned, kiln_report *report) {
+    *owned = desc->encoded != NULL;
+    if (!desc->encoded) {
+        *image = (kiln_image){desc->width, desc->height, desc->channels, desc->format, (void *)desc->pixels};
+        return true;
+    }
+    kiln_where where = where_root(desc->name && *desc->name ? desc->name : "image");
+    return image_decode(desc->encoded, desc->encoded_size, 0, image, &where, report);
+}
+
+static float *to_float_rgba(const kiln_image *image) {
+    size_t count = (size_t)image->width * image->height;
+    float *rgba = aligned_array(4 * count, sizeof *rgba);
+    void *codes = rgba ? expand(image) : NULL;
+    for (size_t i = 0; codes && i < 4 * count; i++) {
+        float code = image->format == KILN_PIXELS_U16 ? (float)((uint16_t *)codes)[i] / 65535.0f
+                     : image->format == KILN_PIXELS_U8 ? (float)((uint8_t *)codes)[i] / 255.0f
+                                                       : ((float *)codes)[i];
+        rgba[i] = i % 4 == 3 ? code : transfer_decode(KILN_TRANSFER_SRGB, code);
+    }
+    if (!codes) {
+        free(rgba);
+        return NULL;
+    }
+    free(codes);
+    return rgba;
+}
+
+typedef struct decode_job {
+    world_image *images;
+    const kiln_scene *scene;
+    kiln_report *report;
+    atomic_bool failed;
+} decode_job;
+
+static void decode_one(void *context, size_t index, uint32_t thread) {
+    (void)thread;
+    decode_job *job = context;
+    world_image *image = &job->images[index];
+    if (!image->wanted || atomic_load(&job->failed)) return;
+    kiln_image pixels;
+    bool owned;
+    if (!pixels_of(&job->scene->images[index], &pixels, &owned, job->report)) {
+        atomic_store(&job->failed, true);
+        return;
+    }
+    image->width = pixels.width;
+    image->height = pixels.height;
+    image->format = pixels.format;
+    bool curved = image->wanted & 1u << KILN_TRANSFER_SRGB && pixels.format != KILN_PIXELS_U8;
+    bool plain = !curved || image->wanted != 1u << KILN_TRANSFER_SRGB;
+    if (plain) image->codes = expand(&pixels);
+    if (curved) image->srgb = to_float_rgba(&pixels);
+    if ((plain && !image->codes) || (curved && !image->srgb)) {
+        report_no_memory(job->report, "decoding textures");
+        atomic_store(&job->failed, true);
+    }
+    if (owned) image_free(&pixels);
+}
+
+bool images_decode(world_image *images, const kiln_scene *scene, uint32_t threads, kiln_report *report) {
+    decode_job job = {images, scene, report, false};
+    threads_for(threads, scene->image_count, decode_one, &job);
+    return !job.failed;
+}
+
+void images_free(world_image *images, uint32_t count) {
+    for (uint32_t i = 0; images && i < count; i++) {
+        free(images[i].codes);
+        free(images[i].srgb);
+    }
+    free(images);
+}
+
+bool image_load_linear(const kiln_image_desc *desc, kiln_transfer transfer, const float *matrix, uint32_t *width,
+                       uint32_t *height, float **rgb, kiln_report *report) {
+    kiln_image pixels;
+    bool owned;
+    if (!pixels_of(desc, &pixels, &owned, report)) return false;
+    size_t count = (size_t)pixels.width * pixels.height;
+    float scale = pixels.format == KILN_PIXELS_U8 ? 1.0f / 255.0f : pixels.format == KILN_PIXELS_U16 ? 1.0f / 65535.0f : 1.0f;
+    *rgb = aligned_array(3 * count, sizeof **rgb);
+    for (size_t i = 0; *rgb && i < count; i++) {
+        float c[3];
+        for (uint32_t k = 0; k < 3; k++) {
+            size_t at = i * pixels.channels + (pixels.channels < 3 ? 0 : k);
+            float code = pixels.format == KILN_PIXELS_U8 ? (float)((uint8_t *)pixels.pixels)[at]
+                         : pixels.format == KILN_PIXELS_U16 ? (float)((uint16_t *)pixels.pixels)[at]
+                                                            : ((float *)pixels.pixels)[at];
+            c[k] = transfer_decode(transfer, code * scale);
+        }
+        for (int k = 0; k < 3; k++)
+            (*rgb)[3 * i + (size_t)k] = matrix[3 * k] * c[0] + matrix[3 * k + 1] * c[1] + matrix[3 * k + 2] * c[2];
+    }
+    *width = pixels.width;
+    *height = pixels.height;
+    if (owned) image_free(&pixels);
+    return *rgb ? true : report_no_memory(report, "decoding the environment");
+}

@@ -1,0 +1,247 @@
+/* render/world/lights.c: everything that emits, in render space, and the distributions to choose by. */
+#include <stdlib.h>
+
+#include "base/threads.h"
+#include "render/world/environment.h"
+
+typedef struct build {
+    world *world;
+    const kiln_scene *scene;
+    const kiln_decoding *decoding;
+    float *power; /* by light: what it gives off, up to a constant */
+    uint32_t threads;
+    kiln_report *report;
+} build;
+
+static bool triangle_emits(const world *w, uint32_t triangle) {
+    const world_material *m = &w->materials[w->triangle_material[triangle]];
+    bool lit = m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0;
+    return lit && !(m->flags & MATERIAL_UNLIT);
+}
+
+/* Numbers the emitting triangles of [first, first + count); returns how many there are. */
+static uint32_t number_emitters(world *w, uint32_t first, uint32_t count, uint32_t number) {
+    uint32_t before = number;
+    for (uint32_t t = first; t < first + count; t++)
+        w->triangle_light[t] = triangle_emits(w, t) ? number++ : LIGHT_NONE;
+    return number - before;
+}
+
+/* All emitting triangles with all their copies. Without any, no array is kept. */
+static bool count_triangles(build *b, uint64_t *total) {
+    world *w = b->world;
+    *total = 0;
+    bool any = false;
+    for (uint32_t t = 0; t < w->triangle_count && !any; t++) any = triangle_emits(w, t);
+    if (!any) return true;
+    w->triangle_light = ARENA_ARRAY(&w->arena, uint32_t, w->triangle_count);
+    uint32_t *by_prototype = array_alloc((size_t)w->prototype_count + 1, sizeof *by_prototype);
+    if (!w->triangle_light || !by_prototype) {
+        free(by_prototype);
+        return report_no_memory(b->report, "building lights");
+    }
+    *total = number_emitters(w, 0, w->baked.count[0] + w->baked.count[1], 0);
+    for (uint32_t p = 0; p < w->prototype_count; p++) {
+        const world_prototype *proto = &w->prototypes[p];
+        by_prototype[p] = number_emitters(w, proto->first[0], proto->count[0] + proto->count[1], 0);
+    }
+    for (uint32_t i = 1; i < w->instance_count; i++) {
+        w->instances[i].light_base = (uint32_t)*total;
+        *total += by_prototype[w->instances[i].prototype];
+    }
+    free(by_prototype);
+    return true;
+}
+
+static vec3 transformed(const world_instance *i, const float *p) {
+    const float *m = i->m;
+    return v3(m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
+              m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]);
+}
+
+/* Mean of the emission texture over the triangle, on a regular grid about as fine as its texels. */
+static float mean_emission(const world *w, const light *l) {
+    if (!l->texture) return 1.0f;
+    const world_texture *t = &w->textures[l->texture - 1];
+    float ux = (l->uv[1][0] - l->uv[0][0]) * (float)t->width, uy = (l->uv[1][1] - l->uv[0][1]) * (float)t->height;
+    float vx = (l->uv[2][0] - l->uv[0][0]) * (float)t->width, vy = (l->uv[2][1] - l->uv[0][1]) * (float)t->height;
+    float texels = fabsf(ux * vy - uy * vx);
+    int n = texels < 4.0f ? 2 : texels > 4096.0f ? 64 : (int)ceilf(sqrtf(texels));
+    float sum = 0, points = 0;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n - i; j++) {
+            float b1 = ((float)i + 0.3333f) / (float)n, b2 = ((float)j + 0.3333f) / (float)n, b0 = 1.0f - b1 - b2;
+            texel c = texture_sample(t, b0 * l->uv[0][0] + b1 * l->uv[1][0] + b2 * l->uv[2][0],
+                                     b0 * l->uv[0][1] + b1 * l->uv[1][1] + b2 * l->uv[2][1]);
+            sum += c.r * l->radiance.x + c.g * l->radiance.y + c.b * l->radiance.z;
+            points += l->radiance.x + l->radiance.y + l->radiance.z;
+        }
+    return points > 0 ? sum / points : 0.0f;
+}
+
+static light triangle_light(const world *w, const world_instance *copy, uint32_t triangle) {
+    const uint32_t *v = w->triangles + 3 * (size_t)triangle;
+    const world_material *m = &w->materials[w->triangle_material[triangle]];
+    vec3 p[3];
+    float reach = copy->magnitude;
+    light l = {.kind = LIGHT_TRIANGLE, .radiance = v3_load(m->emission), .texture = m->texture[SLOT_EMISSION],
+               .two_sided = m->flags & MATERIAL_DOUBLE_SIDED || m->kind == KIND_TRANSMISSIVE ? 1.0f : 0.0f};
+    for (int k = 0; k < 3; k++) {
+        p[k] = transformed(copy, w->vertices[v[k]].p);
+        reach = fmaxf(reach, v3_max(v3_abs(p[k])));
+        const float *uv = w->vertices[v[k]].uv;
+        if (l.texture && w->textures[l.texture - 1].uv_set > 0)
+            uv = w->uvs[w->textures[l.texture - 1].uv_set] + 2 * (size_t)v[k];
+        l.uv[k][0] = uv[0], l.uv[k][1] = uv[1];
+    }
+    l.position = p[0];
+    l.e1 = v3_sub(p[1], p[0]);
+    l.e2 = v3_sub(p[2], p[0]);
+    vec3 n = v3_scale(v3_cross(l.e1, l.e2), copy->side);
+    float twice = v3_length(n);
+    l.area = 0.5f * twice;
+    if (twice > 0) l.axis = v3_scale(n, 1.0f / twice);
+    l.error = reach * 0x1p-20f; /* a dozen roundings of 2⁻²⁴ */
+    return l;
+}
+
+static void add_triangles(build *b) {
+    world *w = b->world;
+    for (uint32_t i = 0; i < w->instance_count; i++) {
+        const world_instance *copy = &w->instances[i];
+        const world_prototype *p = i ? &w->prototypes[copy->prototype] : &w->baked;
+        for (uint32_t t = p->first[0]; t < p->first[0] + p->count[0] + p->count[1]; t++)
+            if (w->triangle_light[t] != LIGHT_NONE)
+                w->lights.lights[copy->light_base + w->triangle_light[t]] = triangle_light(w, copy, t);
+    }
+}
+
+static vec3 into_working(const build *b, const float rgb[3]) {
+    const float *m = b->decoding->matrix[KILN_TRANSFER_LINEAR];
+    return v3(m[0] * rgb[0] + m[1] * rgb[1] + m[2] * rgb[2], m[3] * rgb[0] + m[4] * rgb[1] + m[5] * rgb[2],
+              m[6] * rgb[0] + m[7] * rgb[1] + m[8] * rgb[2]);
+}
+
+/* KHR_lights_punctual, 'Inner and outer cone angles': clamp(cos scale + offset)², 1 inside the inner cone. */
+static void set_spot(light *l, const kiln_light *from) {
+    float inner = cosf(from->inner_cone_rad), outer = cosf(from->outer_cone_rad);
+    l->spot_scale = 1.0f / fmaxf(0.001f, inner - outer);
+    l->spot_offset = -outer * l->spot_scale;
+}
+
+static light punctual_light(const build *b, const kiln_light *from) {
+    mat4 m = mat4_load(from->transform);
+    dvec3 axis = d3_normalize(mat4_vector(&m, (dvec3){0, 0, -1}));
+    light l = {.kind = from->kind == KILN_LIGHT_POINT  ? LIGHT_POINT
+                       : from->kind == KILN_LIGHT_SPOT ? LIGHT_SPOT
+                                                       : LIGHT_DISTANT,
+               .position = to_float(world_point(b->world, d3_load(from->transform + 12))),
+               .axis = to_float(axis),
+               .radiance = v3_scale(into_working(b, from->color), from->intensity)};
+    if (l.kind == LIGHT_SPOT) set_spot(&l, from);
+    if (l.kind != LIGHT_DISTANT) {
+        /* I/d² in metres is I s²/(s d)² in render space. */
+        l.radiance = v3_scale(l.radiance, (float)(b->world->scale * b->world->scale));
+    } else if (from->angle_rad > 0) {
+        double half = 0.5 * (double)from->angle_rad, s = sin(half), q = sin(0.5 * half);
+        l.one_minus_cos = (float)(2 * q * q);
+        l.radiance = v3_scale(l.radiance, (float)(1 / (M_PI * s * s))); /* E = π sin² L */
+    }
+    return l;
+}
+
+static float light_power(const build *b, const light *l) {
+    const float pi = 3.14159265f;
+    const world *w = b->world;
+    float mean = (l->radiance.x + l->radiance.y + l->radiance.z) / 3.0f, disk = pi * w->radius * w->radius;
+    switch (l->kind) {
+    case LIGHT_TRIANGLE: return pi * l->area * mean * mean_emission(w, l) * (1.0f + l->two_sided);
+    case LIGHT_POINT: return 4.0f * pi * mean;
+    case LIGHT_SPOT: return 2.0f * pi * (1.0f + l->spot_offset / l->spot_scale) * mean; /* 1 − cos of the outer cone */
+    case LIGHT_DISTANT: {
+        float h = l->one_minus_cos;
+        return disk * mean * (h > 0 ? pi * h * (2.0f - h) : 1.0f);
+    }
+    case LIGHT_ENVIRONMENT: return disk * w->lights.environment.total;
+    case LIGHT_KINDS: break;
+    }
+    return 0;
+}
+
+enum { CHUNK = 256 };
+
+static void measure_power(void *context, size_t chunk, uint32_t thread) {
+    (void)thread;
+    build *b = context;
+    size_t end = (chunk + 1) * CHUNK;
+    for (size_t i = chunk * CHUNK; i < end && i < b->world->lights.count; i++) {
+        float power = light_power(b, &b->world->lights.lights[i]);
+        b->power[i] = power > 0 && power < INFINITY ? power : 0.0f;
+    }
+}
+
+/* A way of choosing among lights, unless nothing has a chance. */
+static bool add_choice(build *b, light_choice choice, const float *weights) {
+    light_table *t = &b->world->lights;
+    bool any = false;
+    for (uint32_t i = 0; i < t->count; i++) any |= weights[i] > 0;
+    if (!any) return true;
+    t->cdf[choice] = ARENA_ARRAY(&b->world->arena, uint32_t, (size_t)t->count + 1);
+    t->guide[choice] = ARENA_ARRAY(&b->world->arena, uint32_t, t->count);
+    if (!t->cdf[choice] || !t->guide[choice]) return false;
+    distribution_build(weights, t->count, t->cdf[choice], t->guide[choice]);
+    return true;
+}
+
+static bool build_choices(build *b) {
+    light_table *t = &b->world->lights;
+    b->power = array_alloc(t->count, sizeof *b->power);
+    if (!b->power) return false;
+    threads_for(b->threads, (t->count + CHUNK - 1) / CHUNK, measure_power, b);
+    if (!add_choice(b, CHOOSE_BY_POWER, b->power)) return false;
+    for (uint32_t i = 0; i < t->count; i++) b->power[i] = b->power[i] > 0 ? 1.0f : 0.0f;
+    if (!add_choice(b, CHOOSE_UNIFORMLY, b->power)) return false;
+    for (uint32_t i = 0; i < t->count; i++) {
+        const light *l = &t->lights[i];
+        bool hittable = l->kind == LIGHT_TRIANGLE || l->kind == LIGHT_ENVIRONMENT ||
+                        (l->kind == LIGHT_DISTANT && l->one_minus_cos > 0);
+        if (hittable) b->power[i] = 0;
+    }
+    return add_choice(b, CHOOSE_POINTS, b->power);
+}
+
+static bool add_all(build *b, uint64_t triangles) {
+    world *w = b->world;
+    light_table *t = &w->lights;
+    uint64_t total = triangles + b->scene->light_count + 1;
+    if (total >= DISTRIBUTION_QUANTA / 2)
+        return report_error(b->report, KILN_CODE_LIMIT, NULL, "let fewer triangles emit",
+                            "%llu triangles emit light; kiln samples at most 8 million",
+                            (unsigned long long)triangles);
+    t->lights = ARENA_ARRAY(&w->arena, light, total);
+    t->distant = ARENA_ARRAY(&w->arena, uint32_t, (size_t)b->scene->light_count + 1);
+    if (!t->lights || !t->distant) return report_no_memory(b->report, "building lights");
+    if (triangles) add_triangles(b);
+    t->count = (uint32_t)triangles;
+    for (uint32_t i = 0; i < b->scene->light_count; i++) {
+        light l = punctual_light(b, &b->scene->lights[i]);
+        if (l.kind == LIGHT_DISTANT && l.one_minus_cos > 0) t->distant[t->distant_count++] = t->count;
+        t->lights[t->count++] = l;
+    }
+    if (b->scene->has_environment) {
+        if (!environment_build(w, b->scene, b->decoding, b->report)) return false;
+        t->environment.light = t->count;
+        t->lights[t->count++] = (light){.kind = LIGHT_ENVIRONMENT};
+    }
+    for (uint32_t i = 0; i < t->count; i++) t->kinds |= 1u << t->lights[i].kind;
+    return build_choices(b) || report_no_memory(b->report, "building lights");
+}
+
+bool world_build_lights(world *w, const kiln_scene *scene, const kiln_decoding *decoding, uint32_t threads,
+                        kiln_report *report) {
+    build b = {.world = w, .scene = scene, .decoding = decoding, .threads = threads, .report = report};
+    uint64_t triangles;
+    bool done = count_triangles(&b, &triangles) && add_all(&b, triangles);
+    free(b.power);
+    return done;
+}

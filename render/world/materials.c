@@ -1,0 +1,232 @@
+/* render/world/materials.c: the scene's materials as records that a kernel loads, and their textures. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "render/bsdf/albedo.h"
+#include "render/world/images.h"
+#include "render/world/world.h"
+
+/* A parameter and the slot its texture goes to. */
+typedef struct slot_use {
+    material_slot slot;
+    const kiln_texture *texture;
+    const float *factor; /* 3: a colour whose factor must be applied before the matrix into the working space */
+} slot_use;
+
+typedef struct builder {
+    world *world;
+    const kiln_scene *scene;
+    const kiln_decoding *decoding;
+    world_image *images;
+    uint32_t uv_sets[WORLD_UV_SETS];
+    uint32_t uv_set_count;
+    kiln_report *report;
+} builder;
+
+static bool transmits(const kiln_material *m) {
+    return m->layers & KILN_LAYER_TRANSMISSION && m->transmission.value > 0;
+}
+static bool is_solid(const kiln_material *m) {
+    return transmits(m) && m->layers & KILN_LAYER_VOLUME && m->thickness.value > 0;
+}
+static bool emits(const kiln_material *m) {
+    return m->emission.value[0] > 0 || m->emission.value[1] > 0 || m->emission.value[2] > 0;
+}
+
+/* The textures that this material will be asked for. A factor of 0 makes its texture irrelevant. */
+static int list_slots(const kiln_material *m, slot_use uses[SLOT_COUNT]) {
+    int n = 0;
+    bool unlit = m->layers & KILN_LAYER_UNLIT;
+#define USE(slot, texture, factor) uses[n++] = (slot_use){slot, texture, factor}
+    if (m->alpha_mode != KILN_ALPHA_OPAQUE && m->opacity.texture.image) USE(SLOT_OPACITY, &m->opacity.texture, NULL);
+    if (m->base_color.texture.image)
+        USE(unlit ? SLOT_EMISSION : SLOT_BASE, &m->base_color.texture, m->base_color.value);
+    if (unlit) return n;
+    if (emits(m) && m->emission.texture.image) USE(SLOT_EMISSION, &m->emission.texture, m->emission.value);
+    if (m->normal.texture.image && m->normal.value != 0) USE(SLOT_NORMAL, &m->normal.texture, NULL);
+    if (m->metallic.texture.image && m->metallic.value > 0) USE(SLOT_METALLIC, &m->metallic.texture, NULL);
+    if (m->roughness.texture.image && m->roughness.value > 0) USE(SLOT_ROUGHNESS, &m->roughness.texture, NULL);
+    if (m->specular.texture.image && m->specular.value > 0) USE(SLOT_SPECULAR, &m->specular.texture, NULL);
+    if (m->specular_color.texture.image && m->specular.value > 0)
+        USE(SLOT_SPECULAR_COLOR, &m->specular_color.texture, m->specular_color.value);
+    if (transmits(m) && m->transmission.texture.image) USE(SLOT_TRANSMISSION, &m->transmission.texture, NULL);
+#undef USE
+    return n;
+}
+
+static bool is_identity(const float m[9]) {
+    static const float identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    return memcmp(m, identity, sizeof identity) == 0;
+}
+
+static vec3 into_working(const builder *b, const float rgb[3]) {
+    const float *m = b->decoding->matrix[KILN_TRANSFER_LINEAR];
+    return v3(m[0] * rgb[0] + m[1] * rgb[1] + m[2] * rgb[2], m[3] * rgb[0] + m[4] * rgb[1] + m[5] * rgb[2],
+              m[6] * rgb[0] + m[7] * rgb[1] + m[8] * rgb[2]);
+}
+
+/* The place of a UV set among those in use; the vertex itself holds the first. */
+static bool find_uv_set(builder *b, uint32_t set, uint32_t *place) {
+    for (*place = 0; *place < b->uv_set_count; ++*place)
+        if (b->uv_sets[*place] == set) return true;
+    if (b->uv_set_count == WORLD_UV_SETS)
+        return report_error(b->report, KILN_CODE_LIMIT, NULL, "use fewer UV sets",
+                            "the materials use more than %d different UV sets", WORLD_UV_SETS);
+    b->uv_sets[b->uv_set_count++] = set;
+    return true;
+}
+
+/* matrix · diag(factor): the factor belongs in front of the change of primaries. */
+static void set_matrix(world_texture *t, const float matrix[9], const float *factor) {
+    t->has_matrix = !is_identity(matrix);
+    for (int i = 0; t->has_matrix && i < 9; i++) t->matrix[i] = matrix[i] * (factor ? factor[i % 3] : 1.0f);
+}
+
+static bool add_texture(builder *b, const slot_use *use, uint32_t *handle) {
+    const kiln_texture *from = use->texture;
+    const world_image *image = &b->images[from->image - 1];
+    bool own_curve = from->transfer == KILN_TRANSFER_SRGB && image->format != KILN_PIXELS_U8;
+    world_texture t = {
+        .texels = own_curve ? image->srgb : image->codes,
+        .width = (int32_t)image->width,
+        .height = (int32_t)image->height,
+        .format = own_curve ? KILN_PIXELS_F32 : image->format,
+        .wrap_u = from->wrap_u,
+        .wrap_v = from->wrap_v,
+        .nearest = from->filter == KILN_FILTER_NEAREST,
+        .channel = from->channel,
+        .curve = b->decoding->curve[from->transfer],
+    };
+    if (!find_uv_set(b, from->uv_set, &t.uv_set)) return false;
+    memcpy(t.transform, from->transform, sizeof t.transform);
+    set_matrix(&t, b->decoding->matrix[from->transfer], use->factor);
+    b->world->textures[b->world->texture_count++] = t;
+    *handle = b->world->texture_count;
+    return true;
+}
+
+/* Slices for both sides of an interface; materials of equal IOR share them. */
+static void set_slices(builder *b, world_material *m, uint32_t *slice_count) {
+    for (const world_material *other = b->world->materials; other < m; other++) {
+        if (other->kind != KIND_TRANSMISSIVE || other->eta != m->eta) continue;
+        m->slice_outside = other->slice_outside;
+        m->slice_inside = other->slice_inside;
+        return;
+    }
+    m->slice_outside = (int32_t)(*slice_count)++ * ALBEDO_SLICE_FLOATS;
+    m->slice_inside = (int32_t)(*slice_count)++ * ALBEDO_SLICE_FLOATS;
+    albedo_make_slice(m->eta, b->world->slices + m->slice_outside);
+    albedo_make_slice(1.0f / m->eta, b->world->slices + m->slice_inside);
+}
+
+/* Absorption after Beer: attenuation_color is what is left after attenuation_distance. */
+static void set_absorption(const builder *b, world_material *m, const kiln_material *from) {
+    if (!is_solid(from) || !(from->attenuation_distance > 0)) return;
+    vec3 left = into_working(b, from->attenuation_color);
+    float per_unit = 1.0f / (from->attenuation_distance * (float)b->world->scale);
+    const float least = 1e-9f; /* a colour of 0 absorbs all but a billionth over the distance */
+    m->absorption[0] = -logf(fminf(fmaxf(left.x, least), 1.0f)) * per_unit;
+    m->absorption[1] = -logf(fminf(fmaxf(left.y, least), 1.0f)) * per_unit;
+    m->absorption[2] = -logf(fminf(fmaxf(left.z, least), 1.0f)) * per_unit;
+    b->world->absorbs |= m->absorption[0] > 0 || m->absorption[1] > 0 || m->absorption[2] > 0;
+}
+
+static void set_constants(const builder *b, world_material *m, const kiln_material *from) {
+    bool unlit = from->layers & KILN_LAYER_UNLIT;
+    vec3 base = into_working(b, from->base_color.value), emission = into_working(b, from->emission.value);
+    v3_store(m->base, unlit ? v3_splat(0) : base);
+    v3_store(m->emission, unlit ? base : emission);
+    v3_store(m->specular_color, into_working(b, from->specular_color.value));
+    m->opacity = from->opacity.value;
+    m->metallic = from->metallic.value;
+    m->roughness = from->roughness.value;
+    m->normal_scale = from->normal.value;
+    m->specular = unlit ? 0.0f : from->specular.value;
+    m->transmission = transmits(from) && !unlit ? from->transmission.value : 0.0f;
+    m->thin = is_solid(from) ? 0.0f : 1.0f;
+    m->alpha_cutoff = from->alpha_cutoff;
+    m->eta = from->ior > 0 ? fminf(from->ior, 1000.0f) : 1000.0f; /* 0 stands for infinity */
+    float root = (m->eta - 1.0f) / (m->eta + 1.0f);
+    m->f0 = from->ior > 0 ? root * root : 1.0f;
+    m->flags = (from->double_sided ? MATERIAL_DOUBLE_SIDED : 0u) | (unlit ? MATERIAL_UNLIT : 0u) |
+               (from->alpha_mode == KILN_ALPHA_MASK ? MATERIAL_MASK : 0u) |
+               (from->alpha_mode == KILN_ALPHA_BLEND ? MATERIAL_BLEND : 0u) | (is_solid(from) ? MATERIAL_SOLID : 0u);
+    if (unlit) m->metallic = 0.0f;
+    m->kind = m->transmission > 0 ? KIND_TRANSMISSIVE : m->metallic > 0 || m->specular > 0 ? KIND_GLOSSY : KIND_DIFFUSE;
+}
+
+static bool set_textures(builder *b, world_material *m, const kiln_material *from) {
+    slot_use uses[SLOT_COUNT];
+    int n = list_slots(from, uses);
+    for (int i = 0; i < n; i++) {
+        if (!add_texture(b, &uses[i], &m->texture[uses[i].slot])) return false;
+        if (uses[i].slot != SLOT_OPACITY) b->world->slots |= 1u << uses[i].slot;
+        /* The factor went into the texture's matrix. */
+        float *constant = uses[i].slot == SLOT_BASE       ? m->base
+                          : uses[i].slot == SLOT_EMISSION ? m->emission
+                                                          : m->specular_color;
+        if (uses[i].factor && b->world->textures[b->world->texture_count - 1].has_matrix)
+            v3_store(constant, v3_splat(1.0f));
+    }
+    return true;
+}
+
+/* Which materials are on something that is in the picture's world. */
+static bool *mark_used(const kiln_scene *scene) {
+    bool *used = array_alloc((size_t)scene->material_count + 1, sizeof *used);
+    for (uint32_t i = 0; used && i < scene->instance_count; i++) {
+        const kiln_mesh *mesh = scene_mesh(scene, scene->instances[i].mesh);
+        if (!mesh->face_materials) used[mesh->material] = true;
+        else
+            for (uint32_t f = 0; f < mesh->face_count; f++) used[mesh->face_materials[f]] = true;
+    }
+    return used;
+}
+
+static uint32_t want_images(builder *b, const bool *used) {
+    uint32_t textures = 0;
+    for (uint32_t i = 0; i <= b->scene->material_count; i++) {
+        slot_use uses[SLOT_COUNT];
+        int n = used[i] ? list_slots(scene_material(b->scene, i), uses) : 0;
+        for (int k = 0; k < n; k++) b->images[uses[k].texture->image - 1].wanted |= 1u << uses[k].texture->transfer;
+        textures += (uint32_t)n;
+    }
+    return textures;
+}
+
+static bool build(builder *b, const bool *used, uint32_t threads) {
+    world *w = b->world;
+    uint32_t textures = want_images(b, used), slices = 0;
+    if (!images_decode(b->images, b->scene, threads, b->report)) return false;
+    w->material_count = b->scene->material_count + 1;
+    w->materials = ARENA_ARRAY(&w->arena, world_material, w->material_count);
+    w->textures = ARENA_ARRAY(&w->arena, world_texture, (size_t)textures + 1);
+    w->slices = ARENA_ARRAY(&w->arena, float, (size_t)w->material_count * 2 * ALBEDO_SLICE_FLOATS);
+    if (!w->materials || !w->textures || !w->slices) return report_no_memory(b->report, "building materials");
+    for (uint32_t i = 0; i < w->material_count; i++) {
+        if (!used[i]) continue;
+        world_material *m = &w->materials[i];
+        const kiln_material *from = scene_material(b->scene, i);
+        set_constants(b, m, from);
+        set_absorption(b, m, from);
+        if (m->kind == KIND_TRANSMISSIVE) set_slices(b, m, &slices);
+        if (!set_textures(b, m, from)) return false;
+        w->kinds |= 1u << m->kind;
+        w->flags |= m->flags;
+        w->single_sided |= !(m->flags & MATERIAL_DOUBLE_SIDED) && m->kind != KIND_TRANSMISSIVE;
+    }
+    memcpy(w->uv_sets, b->uv_sets, sizeof w->uv_sets);
+    w->uv_set_count = b->uv_set_count;
+    return true;
+}
+
+bool world_build_materials(world *w, const kiln_scene *scene, const kiln_decoding *decoding, uint32_t threads,
+                           kiln_report *report) {
+    bool *used = mark_used(scene);
+    w->image_count = scene->image_count;
+    w->images = array_alloc(scene->image_count, sizeof *w->images);
+    builder b = {.world = w, .scene = scene, .decoding = decoding, .images = w->images, .report = report};
+    bool done = used && w->images ? build(&b, used, threads) : report_no_memory(report, "building materials");
+    free(used);
+    return done;
+}

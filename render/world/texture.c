@@ -1,0 +1,64 @@
+#include "render/world/texture.h"
+
+/* A coordinate brought into [0, 1] by the wrap mode; huge and non-finite ones, which have no digits left, to 0. */
+static float wrap(kiln_wrap mode, float u) {
+    u = fabsf(u) < 0x1p24f ? u : 0.0f;
+    if (mode == KILN_WRAP_REPEAT) return u - fm_floor(u);
+    if (mode == KILN_WRAP_CLAMP) return fm_clamp(u, 0.0f, 1.0f);
+    float half = 0.5f * u, t = 2.0f * (half - fm_floor(half));
+    return t > 1.0f ? 2.0f - t : t;
+}
+
+/* A neighbour that fell off the edge. */
+static int32_t edge(kiln_wrap mode, int32_t i, int32_t n) {
+    if (mode == KILN_WRAP_REPEAT) return i < 0 ? n - 1 : i >= n ? 0 : i;
+    return i < 0 ? 0 : i >= n ? n - 1 : i;
+}
+
+static texel load(const world_texture *t, int32_t x, int32_t y) {
+    size_t at = 4 * ((size_t)y * (size_t)t->width + (size_t)x);
+    if (t->format == KILN_PIXELS_U8) {
+        const uint8_t *p = (const uint8_t *)t->texels + at;
+        return (texel){t->curve[p[0]], t->curve[p[1]], t->curve[p[2]], (float)p[3] * (1.0f / 255.0f)};
+    }
+    if (t->format == KILN_PIXELS_U16) {
+        const uint16_t *p = (const uint16_t *)t->texels + at;
+        const float s = 1.0f / 65535.0f;
+        return (texel){(float)p[0] * s, (float)p[1] * s, (float)p[2] * s, (float)p[3] * s};
+    }
+    const float *p = (const float *)t->texels + at;
+    return (texel){p[0], p[1], p[2], p[3]};
+}
+
+static texel mix(texel a, texel b, float t) {
+    return (texel){a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b), a.a + t * (b.a - a.a)};
+}
+
+static texel filtered(const world_texture *t, float u, float v) {
+    const float *m = t->transform;
+    float x = wrap(t->wrap_u, m[0] * u + m[1] * v + m[2]) * (float)t->width;
+    float y = wrap(t->wrap_v, m[3] * u + m[4] * v + m[5]) * (float)t->height;
+    if (t->nearest) {
+        int32_t i = (int32_t)x, j = (int32_t)y;
+        return load(t, i < t->width ? i : t->width - 1, j < t->height ? j : t->height - 1);
+    }
+    /* Texel centres lie at halves. */
+    float xf = fm_floor(x - 0.5f), yf = fm_floor(y - 0.5f), fx = x - 0.5f - xf, fy = y - 0.5f - yf;
+    int32_t i = (int32_t)xf, j = (int32_t)yf;
+    int32_t i0 = edge(t->wrap_u, i, t->width), i1 = edge(t->wrap_u, i + 1, t->width);
+    int32_t j0 = edge(t->wrap_v, j, t->height), j1 = edge(t->wrap_v, j + 1, t->height);
+    return mix(mix(load(t, i0, j0), load(t, i1, j0), fx), mix(load(t, i0, j1), load(t, i1, j1), fx), fy);
+}
+
+texel texture_sample(const world_texture *t, float u, float v) {
+    texel c = filtered(t, u, v);
+    if (!t->has_matrix) return c;
+    const float *m = t->matrix;
+    return (texel){m[0] * c.r + m[1] * c.g + m[2] * c.b, m[3] * c.r + m[4] * c.g + m[5] * c.b,
+                   m[6] * c.r + m[7] * c.g + m[8] * c.b, c.a};
+}
+
+float texture_channel(const world_texture *t, float u, float v) {
+    texel c = filtered(t, u, v);
+    return t->channel == 0 ? c.r : t->channel == 1 ? c.g : t->channel == 2 ? c.b : c.a;
+}

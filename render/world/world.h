@@ -1,0 +1,125 @@
+/* render/world/world.h: the Scene as kernels gather from it: flat arrays, one index away.
+ *
+ * Render space is the scene's own: moved to its centre and scaled by a power of two to about a metre, in double,
+ * before anything becomes a float. Lengths, areas, intensities and absorption are converted on the way in. */
+#ifndef KILN_RENDER_WORLD_WORLD_H
+#define KILN_RENDER_WORLD_WORLD_H
+
+#include "base/arena.h"
+#include "base/mat.h"
+#include "base/report.h"
+#include "base/vec.h"
+#include "kiln/render.h"
+#include "render/light/table.h"
+#include "render/world/texture.h"
+#include "scene/scene.h"
+
+/* A vertex as a hit needs it: 32 bytes, so that a triangle is three half cache lines. */
+typedef struct world_vertex {
+    float p[3];
+    float n[3]; /* 0: the surface is flat there */
+    float uv[2]; /* of the lowest UV set in use */
+} world_vertex;
+
+enum { WORLD_UV_SETS = 4 }; /* that textures of one scene may use */
+
+/* A copy of some triangles. Copy 0 is everything that was baked into render space, under the identity. */
+typedef struct world_instance {
+    float m[12];               /* rows: p' = m p + translation */
+    float normal[9];           /* rows: cofactors, for normals */
+    uint32_t triangle_base[2]; /* of Embree's geometries 0, opaque, and 1, with coverage */
+    uint32_t prototype;        /* into world.prototypes; copy 0: none */
+    uint32_t light_base;       /* of the first emitting triangle of the prototype */
+    float side;                /* −1: the transform mirrors, so windings turn over */
+    float magnitude;           /* largest |coordinate| on the way to render space: what rounding errors scale with */
+} world_instance;
+
+/* Triangles that several instances share, or those that are baked: of Embree's geometries 0 and 1. */
+typedef struct world_prototype { uint32_t first[2], count[2]; } world_prototype;
+
+typedef enum material_slot {
+    SLOT_BASE, SLOT_METALLIC, SLOT_ROUGHNESS, SLOT_NORMAL, SLOT_EMISSION, SLOT_SPECULAR, SLOT_SPECULAR_COLOR,
+    SLOT_TRANSMISSION, SLOT_OPACITY, SLOT_COUNT
+} material_slot;
+
+enum {
+    MATERIAL_DOUBLE_SIDED = 1 << 0,
+    MATERIAL_MASK = 1 << 1,
+    MATERIAL_BLEND = 1 << 2,
+    MATERIAL_UNLIT = 1 << 3,
+    MATERIAL_SOLID = 1 << 4 /* the surface bounds a medium */
+};
+
+/* What the shading of a material can need: the kernels' instances. */
+typedef enum material_kind { KIND_DIFFUSE, KIND_GLOSSY, KIND_TRANSMISSIVE, KIND_COUNT } material_kind;
+
+typedef struct world_material {
+    float base[3], opacity, metallic, roughness, normal_scale;
+    float emission[3];
+    float f0, eta, specular, specular_color[3], transmission, thin;
+    float absorption[3]; /* per length in render space */
+    float alpha_cutoff;
+    int32_t slice_outside, slice_inside; /* of world.slices */
+    uint32_t texture[SLOT_COUNT];        /* 1 + index into world.textures; 0: none */
+    uint32_t flags;
+    material_kind kind;
+} world_material;
+
+struct accel;
+
+typedef struct world {
+    kiln_arena arena;
+    dvec3 center; /* of render space, in the scene's */
+    double scale; /* render-space units per metre; a power of two */
+    float radius; /* of the scene around the origin, render space */
+
+    world_vertex *vertices;
+    float *tangents;               /* 4 a vertex; NULL: nothing is normal-mapped */
+    float *colors;                 /* 4 a vertex; NULL: no vertex colours */
+    float *uvs[WORLD_UV_SETS]; /* UV sets after the first, which the vertex holds: uvs[k], 2 a vertex */
+    uint32_t vertex_count, triangle_count;
+    uint32_t *triangles;         /* 3 a triangle */
+    uint32_t *triangle_material; /* index into materials */
+    uint32_t *triangle_light;    /* emitter's number in its copy, or LIGHT_NONE; NULL: nothing emits */
+    bool has_colors;
+    world_instance *instances; /* [0] is what is baked */
+    uint32_t instance_count;
+    world_prototype baked, *prototypes;
+    uint32_t prototype_count;
+
+    world_material *materials; /* by kiln_id: 0 is the default material */
+    uint32_t material_count;
+    world_texture *textures;
+    uint32_t texture_count;
+    struct world_image *images; /* what the textures read */
+    uint32_t image_count;
+    uint32_t uv_sets[WORLD_UV_SETS]; /* the scene's numbers of the UV sets in use */
+    uint32_t uv_set_count;
+    float *slices;       /* of albedo_interface */
+    uint32_t slots;      /* bits of material_slot that some material has a texture in */
+    uint32_t kinds;      /* bits of material_kind that occur */
+    uint32_t flags;      /* union of the materials' flags that occur */
+    bool single_sided;   /* some surface is culled from behind */
+    bool absorbs;        /* some medium absorbs */
+
+    light_table lights;
+    struct accel *accel;
+} world;
+
+/* Reads scene, decoding (never NULL) and builds everything on `threads` threads. false: reported. */
+bool world_create(const kiln_scene *, const kiln_decoding *, uint32_t threads, const char *embree_config, world **,
+                  kiln_report *);
+void world_destroy(world *);
+
+/* The parts, in the order in which world_create calls them. */
+bool world_build_materials(world *, const kiln_scene *, const kiln_decoding *, uint32_t threads, kiln_report *);
+bool world_build_geometry(world *, const kiln_scene *, uint32_t threads, kiln_report *);
+/* Appends a copy of a prototype whose coordinates are relative to center. */
+void world_place_instance(world *, const kiln_instance *, const kiln_mesh *, uint32_t prototype, dvec3 center);
+bool world_build_lights(world *, const kiln_scene *, const kiln_decoding *, uint32_t threads, kiln_report *);
+
+/* Scene to render space. */
+static inline dvec3 world_point(const world *w, dvec3 p) { return d3_scale(d3_sub(p, w->center), w->scale); }
+static inline vec3 to_float(dvec3 v) { return v3((float)v.x, (float)v.y, (float)v.z); }
+
+#endif
