@@ -120,17 +120,30 @@ static bool build(mesh_builder *b) {
     return ok;
 }
 
-bool kiln_scene_add_mesh(kiln_scene *scene, const kiln_mesh_desc *desc, kiln_id *id, kiln_report *report) {
+/* Builds the mesh in mesh->arena, which already holds the description's arrays where adopt is set. */
+static bool add(kiln_scene *scene, kiln_mesh *mesh, const kiln_mesh_desc *desc, bool adopt, kiln_id *id, kiln_report *report) {
     scene_place place;
     place_set(&place, scene, "mesh", desc->name, (size_t)scene->mesh_count + 1);
-    kiln_mesh mesh = {0};
-    mesh_builder b = {scene, desc, &mesh, false, &place.where, report};
-    if (!check_open(scene, &place.where, report) || !array_room((void **)&scene->meshes, scene->mesh_count, sizeof mesh, report) ||
-        !build(&b))
+    mesh_builder b = {scene, desc, mesh, adopt, &place.where, report};
+    if (!check_open(scene, &place.where, report) || !array_room((void **)&scene->meshes, scene->mesh_count, sizeof *mesh, report)) {
+        arena_free(&mesh->arena);
         return false;
-    scene->meshes[scene->mesh_count++] = mesh;
+    }
+    if (!build(&b)) return false;
+    scene->meshes[scene->mesh_count++] = *mesh;
     if (id) *id = scene->mesh_count;
     return true;
+}
+
+bool kiln_scene_add_mesh(kiln_scene *scene, const kiln_mesh_desc *desc, kiln_id *id, kiln_report *report) {
+    kiln_mesh mesh = {0};
+    return add(scene, &mesh, desc, false, id, report);
+}
+
+bool scene_adopt_mesh(kiln_scene *scene, kiln_arena *arena, const kiln_mesh_desc *desc, kiln_id *id, kiln_report *report) {
+    kiln_mesh mesh = {.arena = *arena};
+    *arena = (kiln_arena){0};
+    return add(scene, &mesh, desc, true, id, report);
 }
 
 bool scene_replace_mesh(kiln_scene *scene, kiln_id id, kiln_arena *arena, const kiln_mesh_desc *desc, kiln_report *report) {

@@ -52,6 +52,10 @@ static inline void scene_locate(kiln_scene *s, const kiln_where *where) { s->whe
 /* The domains of a camera, for one that never enters a scene too; false is an error. */
 bool camera_check(kiln_camera *, const kiln_where *, kiln_report *);
 
+/* As kiln_scene_add_mesh, for arrays that need no copy: they lie in arena, which the mesh takes over (on failure it is
+ * freed). */
+bool scene_adopt_mesh(kiln_scene *, kiln_arena *arena, const kiln_mesh_desc *, kiln_id *id, kiln_report *);
+
 /* Replaces a mesh of an uncommitted scene; its arrays are checked as kiln_scene_add_mesh does, but not copied: they
  * must lie in arena, which the mesh takes over (on failure it is freed and the old mesh stays). Threads may replace
  * different meshes at the same time. */
