@@ -9,7 +9,7 @@ extern "C" {
 #endif
 
 typedef enum kiln_primvar_kind {
-    KILN_PRIMVAR_NORMAL,  /* 3 floats, object space, need not be normalised */
+    KILN_PRIMVAR_NORMAL,  /* 3 floats, object space, need not be normalised; zero: the face's own */
     KILN_PRIMVAR_TANGENT, /* 4 floats, w = ±1: bitangent = w · cross(normal, tangent) (glTF) */
     KILN_PRIMVAR_UV,      /* 2 floats */
     KILN_PRIMVAR_COLOR    /* 4 floats, linear Rec.709 and alpha; multiplies base colour and opacity */
@@ -66,6 +66,9 @@ typedef struct kiln_subdivision {
     uint32_t corner_count;
     const uint32_t *holes; /* faces */
     uint32_t hole_count;
+    bool triangulated; /* by a format that knows triangles alone (glTF): vertices are split where primvars are, polygons
+                          are cut; refinement puts them together again. AUTO implies it */
+    bool fan_encoded;  /* and consecutive triangles with the same first vertex are one polygon (FB_ngon_encoding) */
 } kiln_subdivision;
 
 /* All arrays are borrowed for the call and copied. Faces wind counter-clockwise seen from the front. */
