@@ -4,11 +4,11 @@
 #include <string.h>
 
 const color_gamut color_gamuts[] = {
-    {"lin_rec709", {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290}},                     /* ITU-R BT.709-6 */
-    {"ACEScg", {0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767}},                 /* AP1: S-2014-004 */
-    {"ACES2065-1", {0.7347, 0.2653, 0.0, 1.0, 0.0001, -0.077, 0.32168, 0.33767}},             /* AP0: SMPTE ST 2065-1 */
-    {"lin_p3d65", {0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290}},                /* SMPTE EG 432-1 */
-    {"lin_rec2020", {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}},              /* ITU-R BT.2020-2 */
+    {"lin_rec709", {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290}},         /* ITU-R BT.709-6 */
+    {"ACEScg", {0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767}},     /* AP1: ACES S-2014-004 */
+    {"ACES2065-1", {0.7347, 0.2653, 0.0, 1.0, 0.0001, -0.077, 0.32168, 0.33767}}, /* AP0: SMPTE ST 2065-1 */
+    {"lin_p3d65", {0.680, 0.320, 0.265, 0.690, 0.150, 0.060, 0.3127, 0.3290}},    /* SMPTE EG 432-1 */
+    {"lin_rec2020", {0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290}},  /* ITU-R BT.2020-2 */
 };
 const size_t color_gamut_count = sizeof color_gamuts / sizeof *color_gamuts;
 
@@ -28,7 +28,8 @@ bool matrix3_invert(const double m[9], double inverse[9]) {
     double determinant = m[0] * cofactors[0] + m[1] * cofactors[1] + m[2] * cofactors[2];
     if (!(fabs(determinant) > 0) || !isfinite(1 / determinant)) return false;
     for (int row = 0; row < 3; row++)
-        for (int column = 0; column < 3; column++) inverse[3 * row + column] = cofactors[3 * column + row] / determinant;
+        for (int column = 0; column < 3; column++)
+            inverse[3 * row + column] = cofactors[3 * column + row] / determinant;
     return true;
 }
 

@@ -1,8 +1,8 @@
 #include "color/neutral.h"
 
-/* offset = x − 6.25 x² under 0.08, else 0.04, of the least channel x
- * peak' = 1 − d² / (peak + d − s), of the largest channel after the offset; s: where compression starts; d = 1 − s
- * g = 1 − 1 / (0.15 (peak − peak') + 1): how far to go to the grey of that peak */
+/* offset: x − 6.25 x² of the least channel x under 0.08, else 0.04
+ * compressed = 1 − d² / (peak + d − start), of the largest channel after the offset, with d = 1 − start
+ * grey = 1 − 1 / (desaturation (peak − compressed) + 1): how far to go to the grey of that peak */
 static const float start = 0.8f - 0.04f, desaturation = 0.15f;
 
 static float least(float a, float b) { return a < b ? a : b; }

@@ -21,8 +21,8 @@ static bool measure(const ocio_config *config, const char *from, const char *to,
     ocio_processor *processor = ocio_convert(config, from, to, where, report);
     if (!processor) return false;
     enum { PROBES = 8 };
-    static const float probes[PROBES][3] = {{1, 0, 0},          {0, 1, 0},    {0, 0, 1},       {0, 0, 0},
-                                            {0.18f, 0.18f, 0.18f}, {10, 20, 5}, {0.9f, -0.1f, 0.3f}, {1e-3f, 2e-3f, 500}};
+    static const float probes[PROBES][3] = {{1, 0, 0},   {0, 1, 0},           {0, 0, 1},          {0.18f, 0.18f, 0.18f},
+                                            {10, 20, 5}, {0.9f, -0.1f, 0.3f}, {1e-3f, 2e-3f, 500}, {0, 0, 0}};
     float values[PROBES][3];
     memcpy(values, probes, sizeof values);
     ocio_apply(processor, values[0], PROBES);

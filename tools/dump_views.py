@@ -27,15 +27,20 @@ def colours():
     yield from ([-0.1, 0.4, 0.2], [0.5, -0.02, 0.01], [-1, -1, -1], [-0.3, 2, -0.3])
 
 
+def literal(x):
+    text = f"{x:.9g}"
+    return text + ("f" if set(".e") & set(text) else ".0f")
+
+
 def main():
     config = ocio.Config.CreateFromBuiltinConfig(CONFIG)
     source = numpy.array(list(colours()), dtype=numpy.float32)
-    print(f"/* Written by tools/dump_views.py with OpenColorIO {ocio.GetVersion()}: {CONFIG}, from linear Rec.709, without")
-    print(" * its faster mathematics, clamped to [0,1]. */")
+    print(f"/* Written by tools/dump_views.py with OpenColorIO {ocio.GetVersion()}: {CONFIG},")
+    print(" * from linear Rec.709, without its faster mathematics, clamped to [0,1]. */")
     print('#include "tests/color/views_table.h"\n')
     print("const float views_colors[][3] = {")
     for r in source:
-        print("    {" + ", ".join(f"{x:.9g}f" if "." in f"{x:.9g}" or "e" in f"{x:.9g}" else f"{x:.9g}.0f" for x in r) + "},")
+        print("    {" + ", ".join(literal(x) for x in r) + "},")
     print("};\nconst size_t views_color_count = sizeof views_colors / sizeof *views_colors;\n")
     print("const views_row views_rows[] = {")
     for display, theirs, view in VIEWS:

@@ -23,7 +23,8 @@ static void embedded_config_lists_its_names(void **state) {
     assert_int_equal(unsetenv("OCIO"), 0);
     kiln_color *color = color_of(NULL, NULL);
     assert_string_equal(kiln_color_describe(color), "embedded kiln config, working space lin_rec709");
-    const char *const spaces[] = {"ACES2065-1", "ACEScg", "lin_rec709", "lin_p3d65", "CIE-XYZ-D65", "sRGB - Texture", "Raw"};
+    const char *const spaces[] = {"ACES2065-1",  "ACEScg",         "lin_rec709", "lin_p3d65",
+                                  "CIE-XYZ-D65", "sRGB - Texture", "Raw"};
     for (size_t i = 0; i < sizeof spaces / sizeof *spaces; i++) assert_true(listed(color, kiln_color_space, spaces[i]));
     const char *const displays[] = {"sRGB", "Rec.1886", "Display P3"};
     const char *const views[] = {"Khronos PBR Neutral", "ACES 1.0 - SDR Video", "Un-tone-mapped", "Raw"};
@@ -80,7 +81,7 @@ static void unknown_working_spaces(void **state) {
     refuse(NULL, "Raw", KILN_CODE_COLOR, "", "Raw is not scene-linear", "scene-linear");
     refuse(NULL, "srgb_display", KILN_CODE_COLOR, "", "srgb_display is not scene-linear", "scene-linear");
     refuse(DATA "studio.ocio", "curved", KILN_CODE_COLOR, "studio.ocio", "curved is not scene-linear", "scene-linear");
-    refuse(DATA "studio.ocio", "nothing", KILN_CODE_COLOR, "studio.ocio", "nothing is not scene-linear", "scene-linear");
+    refuse(DATA "studio.ocio", "nothing", KILN_CODE_COLOR, "studio.ocio", "nothing is not scene-linear", "choose");
     refuse(DATA "studio.ocio", "rendering", KILN_CODE_COLOR, "studio.ocio",
            "there are: \"ap0\", \"rendering space\"", "kiln color --list");
     /* Without aces_interchange there is no way to a space that the config does not have. */
@@ -111,7 +112,8 @@ static void unknown_displays_views_and_looks(void **state) {
                 "look \"warm\" does not exist; there are: none", "kiln color --list");
     const double bad[] = {NAN, INFINITY, 65, -65};
     for (size_t i = 0; i < 4; i++)
-        refuse_view(color, (kiln_view_options){.exposure = bad[i]}, KILN_CODE_USAGE, "", "stops is not between", "--exposure");
+        refuse_view(color, (kiln_view_options){.exposure = bad[i]}, KILN_CODE_USAGE, "", "stops is not between",
+                    "--exposure");
     kiln_color_destroy(color);
     color = color_of(DATA "studio.ocio", NULL);
     refuse_view(color, (kiln_view_options){.look = "dark, -warn"}, KILN_CODE_COLOR, "studio.ocio",

@@ -11,7 +11,7 @@ static void assert_matrix(const double *m, const double *expected, double tolera
 static void published_matrices(void **state) {
     (void)state;
     const double srgb[] = {0.4124, 0.3576, 0.1805, 0.2126, 0.7152, 0.0722, 0.0193, 0.1192, 0.9505};
-    const double ap0[] = {0.9525523959, 0.0, 0.0000936786, 0.3439664498, 0.7281660966, -0.0721325464, 0, 0, 1.0088251844};
+    const double ap0[] = {0.9525523959, 0, 0.0000936786, 0.3439664498, 0.7281660966, -0.0721325464, 0, 0, 1.0088251844};
     double m[9];
     gamut_to_xyz(gamut_find("lin_rec709"), m);
     assert_matrix(m, srgb, 5e-5);

@@ -69,8 +69,10 @@ static void expected_matrix(const char *space, double m[9]) {
 
 static void matrices_follow_from_primaries(void **state) {
     (void)state;
-    const char *const spaces[] = {"lin_rec709", "ACEScg", "ACES2065-1", "lin_p3d65", "lin_rec2020", "lin_ap1", "scene_linear"};
-    const char *const same[] = {"lin_rec709", "ACEScg", "ACES2065-1", "lin_p3d65", "lin_rec2020", "ACEScg", "lin_rec709"};
+    const char *const spaces[] = {"lin_rec709",  "ACEScg",  "ACES2065-1",  "lin_p3d65",
+                                  "lin_rec2020", "lin_ap1", "scene_linear"};
+    const char *const same[] = {"lin_rec709",  "ACEScg", "ACES2065-1", "lin_p3d65",
+                                "lin_rec2020", "ACEScg", "lin_rec709"};
     for (size_t i = 0; i < sizeof spaces / sizeof *spaces; i++) {
         double m[9];
         expected_matrix(same[i], m);

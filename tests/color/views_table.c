@@ -1,5 +1,5 @@
-/* Written by tools/dump_views.py with OpenColorIO 2.6.0: cg-config-v2.2.0_aces-v1.3_ocio-v2.4, from linear Rec.709, without
- * its faster mathematics, clamped to [0,1]. */
+/* Written by tools/dump_views.py with OpenColorIO 2.6.0: cg-config-v2.2.0_aces-v1.3_ocio-v2.4,
+ * from linear Rec.709, without its faster mathematics, clamped to [0,1]. */
 #include "tests/color/views_table.h"
 
 const float views_colors[][3] = {

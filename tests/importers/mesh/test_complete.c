@@ -15,7 +15,8 @@ static const float positions[] = {0, 0, 0, 0, 0, 2, 1, 1, 2, 1, 1, 0, 2, 0, 2, 2
 static const uint32_t face_sizes[] = {4, 4, 6};
 static const uint32_t face_vertices[] = {0, 1, 2, 3, 3, 2, 4, 5, 11, 10, 9, 8, 7, 6};
 static const float uvs[] = {0, 0, 0, 2, 1, 2, 1, 0, 2, 2, 2, 0, 4, 0, 6, 0, 6, 1, 5, 1, 5, 2, 4, 2};
-static const kiln_primvar uv0 = {.kind = KILN_PRIMVAR_UV, .interpolation = KILN_VERTEX, .values = uvs, .value_count = 12};
+static const kiln_primvar uv0 = {
+    .kind = KILN_PRIMVAR_UV, .interpolation = KILN_VERTEX, .values = uvs, .value_count = 12};
 
 static kiln_mesh_desc roof(void) {
     return (kiln_mesh_desc){.name = "roof", .vertex_count = 12, .positions = positions, .face_count = 3,

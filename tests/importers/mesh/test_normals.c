@@ -40,7 +40,8 @@ static void faces_point_to_their_front(void **state) {
 
 /* 12 triangles, cut along whatever diagonals come. */
 static void make_cube(float *positions) {
-    static const uint8_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    static const uint8_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                        {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     static const uint8_t cut[2][6] = {{0, 1, 2, 0, 2, 3}, {0, 1, 3, 1, 2, 3}};
     for (int f = 0; f < 6; f++)
         for (int k = 0; k < 6; k++) {
