@@ -144,9 +144,8 @@ const char *kiln_color_view(const kiln_color *color, const char *display, size_t
     return NULL;
 }
 
-/* As many names as fit on a few lines. */
 static void append_names(kiln_text *text, const name_list *known) {
-    enum { LISTED = 24 };
+    enum { LISTED = 100 }; /* a studio's config has some dozens */
     for (size_t i = 0; i < known->count && i < LISTED; i++)
         text_format(text, "%s\"%s\"", i ? ", " : "", known->names[i]);
     if (known->count > LISTED) text_format(text, " and %zu more", known->count - LISTED);
@@ -158,7 +157,7 @@ bool color_unknown_name(const kiln_color *color, const char *what, const char *g
     append_names(&text, known);
     const char *nearest = text_nearest(given, known->names, known->count);
     if (nearest) text_format(&remedy, "did you mean \"%s\"?", nearest);
-    else text_append(&remedy, "`kiln color --list` shows every name; --ocio or $OCIO chooses another config");
+    else text_append(&remedy, "choose one of them, or another config with --ocio or $OCIO");
     report_error(report, KILN_CODE_COLOR, &color->where, remedy.data, "%s \"%s\" does not exist; there %s: %s", what,
                  given, known->count == 1 ? "is" : "are", known->count ? text.data : "none");
     text_free(&text);

@@ -76,14 +76,14 @@ static void unknown_working_spaces(void **state) {
     refuse(NULL, "ACESg", KILN_CODE_COLOR, "embedded kiln config",
            "colour space \"ACESg\" does not exist; there are: \"ACES2065-1\", \"ACEScg\", \"lin_rec709\"",
            "did you mean \"ACEScg\"?");
-    refuse(NULL, "something else", KILN_CODE_COLOR, "", "does not exist", "kiln color --list");
+    refuse(NULL, "something else", KILN_CODE_COLOR, "", "does not exist", "choose one of them");
     refuse(NULL, "sRGB - Texture", KILN_CODE_COLOR, "", "sRGB - Texture is not scene-linear", "scene-linear");
     refuse(NULL, "Raw", KILN_CODE_COLOR, "", "Raw is not scene-linear", "scene-linear");
     refuse(NULL, "srgb_display", KILN_CODE_COLOR, "", "srgb_display is not scene-linear", "scene-linear");
     refuse(DATA "studio.ocio", "curved", KILN_CODE_COLOR, "studio.ocio", "curved is not scene-linear", "scene-linear");
     refuse(DATA "studio.ocio", "nothing", KILN_CODE_COLOR, "studio.ocio", "nothing is not scene-linear", "choose");
     refuse(DATA "studio.ocio", "rendering", KILN_CODE_COLOR, "studio.ocio",
-           "there are: \"ap0\", \"rendering space\"", "kiln color --list");
+           "there are: \"ap0\", \"rendering space\"", "choose one of them");
     /* Without aces_interchange there is no way to a space that the config does not have. */
     refuse(DATA "old.ocio", "lin_p3d65", KILN_CODE_COLOR, "old.ocio", "\"lin_p3d65\" does not exist", "");
 }
@@ -107,9 +107,9 @@ static void unknown_displays_views_and_looks(void **state) {
                 "did you mean \"Display P3\"?");
     refuse_view(color, (kiln_view_options){.view = "Khronos PBR"}, KILN_CODE_COLOR, "",
                 "view \"Khronos PBR\" does not exist; there are: \"Khronos PBR Neutral\", \"ACES 1.0 - SDR Video\"",
-                "kiln color --list");
+                "choose one of them");
     refuse_view(color, (kiln_view_options){.look = "warm"}, KILN_CODE_COLOR, "",
-                "look \"warm\" does not exist; there are: none", "kiln color --list");
+                "look \"warm\" does not exist; there are: none", "choose one of them");
     const double bad[] = {NAN, INFINITY, 65, -65};
     for (size_t i = 0; i < 4; i++)
         refuse_view(color, (kiln_view_options){.exposure = bad[i]}, KILN_CODE_USAGE, "", "stops is not between",
