@@ -159,7 +159,7 @@ bool color_unknown_name(const kiln_color *color, const char *what, const char *g
     if (nearest) text_format(&remedy, "did you mean \"%s\"?", nearest);
     else text_append(&remedy, "choose one of them, or another config with --ocio or $OCIO");
     report_error(report, KILN_CODE_COLOR, &color->where, remedy.data, "%s \"%s\" does not exist; there %s: %s", what,
-                 given, known->count == 1 ? "is" : "are", known->count ? text.data : "none");
+                 given, known->count == 1 ? "is" : "are", text.data ? text.data : "none");
     text_free(&text);
     text_free(&remedy);
     return false;

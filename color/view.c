@@ -1,5 +1,4 @@
 /* From the working space to a display. */
-#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -44,11 +43,10 @@ static const name_list *views_of(const kiln_color *color, const char *display) {
 
 /* OpenColorIO's notation: looks apply in order ("a, -b": b undone), "|" separates alternatives. */
 static bool check_looks(const kiln_color *color, const char *looks, kiln_report *report) {
-    static const char separators[] = ",:|";
     for (const char *at = looks; *at;) {
-        while (isspace((unsigned char)*at) || *at == '+' || *at == '-') at++;
-        size_t length = strcspn(at, separators), rest = length;
-        while (length && isspace((unsigned char)at[length - 1])) length--;
+        at += strspn(at, " +-");
+        size_t length = strcspn(at, ",:|"), rest = length;
+        while (length && at[length - 1] == ' ') length--;
         char *name = strndup(at, length);
         if (!name) return report_no_memory(report, "preparing a view");
         bool fine = !length || known(&color->looks, name) ||
