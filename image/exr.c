@@ -47,6 +47,9 @@ static void on_error(exr_const_context_t context, exr_result_t code, const char 
 
 static bool damaged(reader *r, exr_result_t code) {
     if (code == EXR_ERR_OUT_OF_MEMORY) return report_no_memory(r->source->report, "reading an OpenEXR image");
+    if (code == EXR_ERR_FEATURE_NOT_IMPLEMENTED) /* DWAA and DWAB, in OpenEXRCore 3.1 */
+        return image_refuse(r->source, KILN_CODE_IMAGE, "save it with ZIP or PIZ compression",
+                            "the OpenEXR library has no decoder for this file's compression");
     return image_damaged(r->source, "OpenEXR", r->message[0] ? r->message : exr_get_default_error_message(code));
 }
 
@@ -89,8 +92,8 @@ static bool find_part(reader *r) {
 }
 
 static bool check_channels(reader *r) {
-    for (uint32_t i = 0; i < r->pick_count; i++) {
-        const exr_attr_chlist_entry_t *c = &r->channels->entries[r->pick[i]];
+    for (int i = 0; i < r->channels->num_channels; i++) {
+        const exr_attr_chlist_entry_t *c = &r->channels->entries[i];
         if (c->x_sampling != 1 || c->y_sampling != 1)
             return image_refuse(r->source, KILN_CODE_IMAGE, "save the image without subsampling",
                                 "channel %s of the OpenEXR file is subsampled", c->name.str);
@@ -159,11 +162,8 @@ static exr_result_t unpack(exr_decode_pipeline_t *decode) {
     const exr_chunk_info_t *chunk = &decode->chunk;
     const unsigned char *at = decode->unpacked_buffer;
     uint64_t line_bytes = 0;
-    for (int c = 0; c < decode->channel_count; c++) {
-        const exr_coding_channel_info_t *channel = &decode->channels[c];
-        if (channel->x_samples != 1 || channel->y_samples != 1) return EXR_ERR_FEATURE_NOT_IMPLEMENTED;
-        line_bytes += (uint64_t)chunk->width * (channel->data_type == EXR_PIXEL_HALF ? 2 : 4);
-    }
+    for (int c = 0; c < decode->channel_count; c++)
+        line_bytes += (uint64_t)chunk->width * (decode->channels[c].data_type == EXR_PIXEL_HALF ? 2 : 4);
     if (!at || chunk->width <= 0 || chunk->height <= 0 || chunk->packed_size == 0 ||
         line_bytes * (uint64_t)chunk->height > chunk->unpacked_size)
         return EXR_ERR_CORRUPT_CHUNK;

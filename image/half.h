@@ -5,16 +5,13 @@
 #include <stdint.h>
 #include <string.h>
 
-/* Exact. */
+/* Exact, whether or not the thread flushes subnormal floats to zero. */
 static inline float half_to_float(uint16_t half) {
-    uint32_t sign = (uint32_t)(half & 0x8000u) << 16, bits = (uint32_t)(half & 0x7fffu) << 13;
-    float value;
-    bits = (half & 0x7c00u) == 0x7c00u ? bits | 0x7f800000u : bits; /* infinity and NaN */
-    memcpy(&value, &bits, sizeof value);
-    /* The exponent's bias is 15 there and 127 here; this multiplication also makes subnormals normal. */
-    if ((half & 0x7c00u) != 0x7c00u) value *= 0x1p112f;
+    uint32_t exponent = half >> 10 & 31u, mantissa = half & 1023u, bits;
+    float value = (float)mantissa * 0x1p-24f; /* a subnormal half is a normal float */
     memcpy(&bits, &value, sizeof bits);
-    bits |= sign;
+    if (exponent) bits = (exponent == 31 ? 255u : exponent + 112u) << 23 | mantissa << 13; /* the bias: 15 and 127 */
+    bits |= (uint32_t)(half & 0x8000u) << 16;
     memcpy(&value, &bits, sizeof value);
     return value;
 }

@@ -8,6 +8,8 @@
 #include "image/codec.h"
 #include "image/half.h"
 
+enum { TABLES_MIN = 1 << 20 }; /* what libtiff may always allocate, however small the picture must be */
+
 /* libtiff reports through the handle, so that nothing global is touched and two files can be read at once. */
 static int on_error(TIFF *tiff, void *user, const char *module, const char *format, va_list args) {
     image_tiff_stream *stream = user;
@@ -72,7 +74,7 @@ TIFF *image_tiff_open(image_tiff_stream *stream, const char *mode, uint64_t limi
     if (!options) return NULL;
     TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, stream);
     TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, stream);
-    TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)limit);
+    if (limit) TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)(limit < TABLES_MIN ? TABLES_MIN : limit));
     TIFF *tiff = TIFFClientOpenExt("TIFF", mode, stream, stream_read, stream_write, stream_seek, stream_close,
                                    stream_size, no_map, no_unmap, options);
     TIFFOpenOptionsFree(options);

@@ -14,7 +14,7 @@ typedef struct image_tiff_stream {
     char message[256]; /* the first error */
 } image_tiff_stream;
 
-/* mode as of TIFFOpen; no single allocation above limit bytes. NULL: the message says why. */
+/* mode as of TIFFOpen; no single allocation far above limit bytes (0: none). NULL: the message says why. */
 TIFF *image_tiff_open(image_tiff_stream *, const char *mode, uint64_t limit);
 
 #endif
