@@ -1,0 +1,155 @@
+#include <string.h>
+
+#include "importers/gltf/reader.h"
+#include "importers/gltf/value.h"
+
+static const char repair[] = "repair the file in the tool that wrote it";
+
+/* Section 3.5.3: a matrix, or translation · rotation · scale. */
+static mat4 local_transform(const gltf_node *n) {
+    double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+    if (n->matrix.count) return mat4_load(n->matrix.items);
+    if (n->translation.count) memcpy(t, n->translation.items, sizeof t);
+    if (n->scale.count) memcpy(s, n->scale.items, sizeof s);
+    if (n->rotation.count) {
+        memcpy(q, n->rotation.items, sizeof q);
+        double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+        for (int k = 0; k < 4; k++) q[k] = length > 0 ? q[k] / length : k == 3; /* no rotation rather than none at all */
+    }
+    return mat4_trs(t, q, s);
+}
+
+static bool add_camera(gltf_reader *r, const gltf_node *n, const mat4 *transform) {
+    const gltf_camera *c = &r->document.cameras[n->camera];
+    kiln_camera camera = kiln_camera_default();
+    camera.name = *c->name ? c->name : n->name;
+    if (c->orthographic) {
+        camera.projection = KILN_ORTHOGRAPHIC;
+        camera.xmag = c->xmag;
+        camera.ymag = c->ymag;
+        camera.aspect = c->ymag != 0 ? fabs(c->xmag / c->ymag) : 0;
+    } else {
+        camera.yfov_rad = c->yfov;
+        camera.aspect = c->aspect;
+    }
+    camera.znear = c->znear;
+    camera.zfar = c->zfar;
+    memcpy(camera.transform, transform->m, sizeof camera.transform);
+    kiln_where where = where_item(&r->file, "cameras", (size_t)n->camera);
+    scene_locate(r->scene, &where);
+    bool added = kiln_scene_add_camera(r->scene, &camera, NULL, r->report);
+    scene_locate(r->scene, &r->file);
+    return added;
+}
+
+/* KHR_lights_punctual, section "Inner and outer cone angles": 0 ≤ inner < outer ≤ π/2. */
+static void read_cone(const gltf_reader *r, const gltf_light *l, kiln_light *light, const kiln_where *where) {
+    const double right_angle = 1.5707963267948966;
+    double inner = l->inner_cone, outer = l->outer_cone;
+    if (!(outer > 0 && outer <= right_angle * (1 + 1e-6)) || !(inner >= 0 && inner < outer))
+        report_warning(r->report, KILN_CODE_RANGE, where, NULL,
+                       "cone angles must be 0 <= inner < outer <= pi/2: they are clamped");
+    outer = outer > 0 ? fmin(outer, right_angle) : 0;
+    inner = inner >= 0 ? fmin(inner, outer) : 0;
+    light->inner_cone_rad = (float)inner;
+    light->outer_cone_rad = (float)outer;
+}
+
+static bool read_kind(const gltf_reader *r, const gltf_light *l, kiln_light *light, const kiln_where *where) {
+    static const struct { const char *name; kiln_light_kind kind; } rows[] = {
+        {"point", KILN_LIGHT_POINT}, {"spot", KILN_LIGHT_SPOT}, {"directional", KILN_LIGHT_DISTANT}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (strcmp(l->type, rows[i].name) == 0) {
+            light->kind = rows[i].kind;
+            return true;
+        }
+    kiln_where here = where_key(where, "type");
+    return report_error(r->report, KILN_CODE_RANGE, &here, "use point, spot or directional", "\"%.40s\" is no kind of light",
+                        l->type);
+}
+
+static bool add_light(gltf_reader *r, int index, const gltf_node *n, const mat4 *transform) {
+    const gltf_light *l = &r->document.lights[index];
+    kiln_where extensions = where_key(&r->file, "extensions"), punctual = where_key(&extensions, "KHR_lights_punctual"),
+               where = where_item(&punctual, "lights", (size_t)index);
+    kiln_light light = kiln_light_default();
+    light.name = *l->name ? l->name : n->name;
+    light.intensity = (float)l->intensity;
+    memcpy(light.transform, transform->m, sizeof light.transform);
+    if (!read_kind(r, l, &light, &where)) return false;
+    if (l->color.count && l->color.count != 3) {
+        kiln_where color = where_key(&where, "color");
+        return report_error(r->report, KILN_CODE_RANGE, &color, repair, "%zu numbers (3 are expected)", l->color.count);
+    }
+    for (size_t k = 0; k < l->color.count; k++) light.color[k] = (float)l->color.items[k];
+    if (light.kind == KILN_LIGHT_SPOT) read_cone(r, l, &light, &where);
+    scene_locate(r->scene, &where);
+    bool added = kiln_scene_add_light(r->scene, &light, NULL, r->report);
+    scene_locate(r->scene, &r->file);
+    return added;
+}
+
+/* A node on its way to the scene; its parent's transform comes along. */
+typedef struct visit {
+    int node;
+    bool visible;
+    mat4 parent;
+} visit;
+
+/* *visible: that of the parent, then that of the node and its descendants (KHR_node_visibility). Cameras need not be
+ * visible. */
+static bool enter_node(gltf_reader *r, int index, const mat4 *transform, bool *visible) {
+    const gltf_document *d = &r->document;
+    const gltf_node *n = &d->nodes[index];
+    kiln_where node = where_item(&r->file, "nodes", (size_t)index), list = where_key(&node, "extensions"),
+               visibility = where_key(&list, "KHR_node_visibility"), punctual = where_key(&list, "KHR_lights_punctual");
+    int light = -1;
+    bool shown = true;
+    if (!value_bool(value_member(&n->extensions, "KHR_node_visibility"), "visible", &shown, &visibility, r->report) ||
+        !value_index(value_member(&n->extensions, "KHR_lights_punctual"), "light", &light, &punctual, r->report) ||
+        !check_key(r, light, d->light_count, "light", &punctual, "light"))
+        return false;
+    if (n->camera >= 0 && !add_camera(r, n, transform)) return false;
+    *visible &= shown;
+    if (!*visible) return true;
+    if (n->mesh >= 0) r->placements[r->placement_count++] = (gltf_placement){(size_t)index, *transform};
+    return light < 0 || add_light(r, light, n, transform);
+}
+
+/* Depth first, first child first. Trees were checked: each node is pushed once, so count entries are enough. */
+static bool walk(gltf_reader *r, const int *roots, size_t root_count, visit *stack) {
+    size_t top = 0;
+    for (size_t i = root_count; i-- > 0;) stack[top++] = (visit){roots[i], true, mat4_identity()};
+    while (top) {
+        visit v = stack[--top];
+        const gltf_node *n = &r->document.nodes[v.node];
+        mat4 transform = mat4_mul(v.parent, local_transform(n));
+        if (!enter_node(r, v.node, &transform, &v.visible)) return false;
+        for (size_t c = n->children.count; c-- > 0;)
+            stack[top++] = (visit){n->children.items[c], v.visible, transform};
+    }
+    return true;
+}
+
+/* Without any scene, all nodes that are nobody's children. */
+static gltf_indices find_roots(gltf_reader *r) {
+    const gltf_document *d = &r->document;
+    bool *is_child = reader_array(r, d->node_count, sizeof *is_child, &r->file);
+    int *roots = is_child ? reader_array(r, d->node_count, sizeof *roots, &r->file) : NULL;
+    gltf_indices found = {roots, 0};
+    if (!roots) return found;
+    for (size_t i = 0; i < d->node_count; i++)
+        for (size_t c = 0; c < d->nodes[i].children.count; c++) is_child[d->nodes[i].children.items[c]] = true;
+    for (size_t i = 0; i < d->node_count; i++)
+        if (!is_child[i]) roots[found.count++] = (int)i;
+    return found;
+}
+
+bool place_nodes(gltf_reader *r) {
+    const gltf_document *d = &r->document;
+    r->placements = reader_array(r, d->node_count, sizeof *r->placements, &r->file);
+    visit *stack = r->placements ? reader_array(r, d->node_count, sizeof *stack, &r->file) : NULL;
+    if (!stack) return false;
+    gltf_indices roots = d->scene_count ? d->scenes[d->scene < 0 ? 0 : d->scene] : find_roots(r);
+    return (roots.items || !roots.count) && walk(r, roots.items, roots.count, stack);
+}
