@@ -229,8 +229,11 @@ static bool read_converted(reader *r) {
     kiln_image *image = r->image;
     size_t pixels = (size_t)image->width * image->height;
     if (!TIFFRGBAImageOK(r->tiff, why)) return damaged(r, why);
-    if (pixels > r->source->limit / 4) return unusual(r);
-    uint32_t *rgba = array_alloc(pixels, 4);
+    if (pixels > r->source->limit / sizeof(uint32_t))
+        return image_refuse(r->source, KILN_CODE_LIMIT, "save it as grey or RGB of 8 bits",
+                            "converting the TIFF image to RGB needs more than %llu bytes",
+                            (unsigned long long)r->source->limit);
+    uint32_t *rgba = array_alloc(pixels, sizeof *rgba);
     if (!rgba) return report_no_memory(r->source->report, "reading a TIFF image");
     bool done = TIFFReadRGBAImageOriented(r->tiff, image->width, image->height, rgba, ORIENTATION_TOPLEFT, 1);
     unsigned char *to = image->pixels;

@@ -84,7 +84,7 @@ static inline kiln_text make_exr(const exr_form *parts, int count, exr_value *va
     exr_maker_ok(exr_start_write(&file, "made", EXR_WRITE_FILE_DIRECTLY, &setup));
     for (int p = 0; p < count; p++) {
         const exr_form *f = &parts[p];
-        char name[8];
+        char name[16];
         int index;
         snprintf(name, sizeof name, "part%d", p);
         exr_maker_ok(exr_add_part(file, name, f->tile ? EXR_STORAGE_TILED : EXR_STORAGE_SCANLINE, &index));
