@@ -53,7 +53,8 @@ typedef struct kiln_film_error {
     double relmse_low, relmse_high; /* 95 % interval of relmse */
     bool heavy_tail;       /* few pixels hold most of the error: an unseen tail is likely */
 } kiln_film_error;
-KILN_API kiln_film_error kiln_film_estimate_error(const kiln_film *);
+/* scale multiplies the picture first (2^exposure): the 0.01 is a matter of what is seen. */
+KILN_API kiln_film_error kiln_film_estimate_error(const kiln_film *, double scale);
 
 KILN_API uint64_t kiln_film_samples(const kiln_film *);      /* in all pixels together */
 KILN_API uint32_t kiln_film_spp(const kiln_film *);          /* samples in every pixel, finished passes alone */

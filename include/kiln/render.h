@@ -73,6 +73,7 @@ typedef struct kiln_render_options {
     const kiln_camera *camera;   /* [the scene's first camera] */
     uint32_t spp;                /* [64 when no rule at all is given, else no limit] */
     double noise;                /* target for the square root of the estimated relMSE, 0.01 for 1 % [no target] */
+    double error_scale;          /* the picture is multiplied by this before its error is judged: 2^exposure [1] */
     double budget_seconds;       /* [no limit] */
     uint64_t seed;
     uint32_t max_depth;          /* scattering events of a path [64]; KILN_DEPTH_ZERO for none */
@@ -89,6 +90,7 @@ typedef struct kiln_render_options {
     void *progress_user;
     uint32_t batch_size;         /* for tests: paths that advance together [1024] */
     uint64_t tile_shuffle;       /* for tests: another order of tiles, same bits [none] */
+    const char *isa;             /* for tests: "v2", "v3", "v4": which instance of the stages runs, same bits [the best] */
 } kiln_render_options;
 
 #define KILN_DEPTH_ZERO UINT32_MAX

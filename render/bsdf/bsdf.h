@@ -54,6 +54,7 @@ typedef struct bsdf {
     float eta, thin;
     float again_near, again_far;    /* multiple scattering of the interface, but for its factors at wi */
     int32_t far_slice, near_slice;
+    vec3 wide;                      /* albedo of DIFFUSE and BELOW together */
     float p_diffuse, p_below, p_reflect, p_transmit; /* selection probabilities; sum 1, or all 0: black */
 } bsdf;
 
@@ -147,7 +148,7 @@ KERNEL float bsdf_transmission_weight(const bsdf *b) {
 }
 
 KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo, const float *slices) {
-    bsdf b = {.wo = wo, .diffuse = s->base, .p_diffuse = average(s->base) > 0.0f ? 1.0f : 0.0f};
+    bsdf b = {.wo = wo, .diffuse = s->base, .wide = s->base, .p_diffuse = average(s->base) > 0.0f ? 1.0f : 0.0f};
     if (!(mask & BSDF_GLOSSY)) return b;
     float dielectric = 1.0f - s->metallic, t = mask & BSDF_TRANSMISSIVE ? s->transmission : 0.0f;
     b.roughness = s->roughness;
@@ -164,7 +165,8 @@ KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo, const float *sli
     b.reflect0 = v3_madd(v3_scale(b.f0, opaque), s->metallic, s->base);
     b.reflect1 = v3_madd(v3_scale(v3_sub(v3_splat(b.f90), b.f0), opaque), s->metallic,
                          v3_sub(v3_splat(1.0f), s->base));
-    float w_diffuse = average(v3_add(base, metal)), w_below = 0.0f, w_transmit = 0.0f;
+    b.wide = v3_add(base, metal);
+    float w_diffuse = average(b.wide), w_below = 0.0f, w_transmit = 0.0f;
     if (mask & BSDF_TRANSMISSIVE) {
         float reflected, passed;
         b.interface = dielectric * t;
@@ -177,6 +179,7 @@ KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo, const float *sli
         w_diffuse += b.interface * reflected;
         w_below = average(b.tint) * passed;
         w_transmit = bsdf_transmission_weight(&b);
+        b.wide = v3_madd(v3_add(b.wide, v3_splat(b.interface * reflected)), passed, b.tint);
     }
     float w_reflect = average(bsdf_reflection_fresnel(mask, &b, wo.z * (1.0f - 0.5f * b.alpha)));
     float sum = w_diffuse + w_below + w_reflect + w_transmit, scale = sum > 0.0f ? 1.0f / sum : 0.0f;
@@ -185,6 +188,16 @@ KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo, const float *sli
     b.p_reflect = w_reflect * scale;
     b.p_transmit = w_transmit * scale;
     return b;
+}
+
+/* Directional albedo at wo, with each Fresnel term taken at wo itself: what a denoiser wants to know. */
+KERNEL vec3 bsdf_albedo(unsigned mask, const bsdf *b) {
+    if (!(mask & BSDF_GLOSSY)) return b->wide;
+    float full = bsdf_full(b->wo.z, b->alpha, albedo_roughness_node(b->roughness));
+    vec3 sum = v3_madd(b->wide, full, bsdf_reflection_fresnel(mask, b, b->wo.z));
+    if (mask & BSDF_TRANSMISSIVE)
+        sum = v3_madd(sum, full, v3_mul(b->tint, v3_sub(v3_splat(1.0f), bsdf_interface_fresnel(b, b->wo.z))));
+    return sum;
 }
 
 /* f(wo, wi) |cos θi| of everything that is not a delta, and the density with which sample chooses wi. */

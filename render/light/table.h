@@ -45,6 +45,7 @@ typedef struct light_table {
     light *lights;
     uint32_t count;
     uint32_t kinds;        /* bits of light_kind that occur */
+    bool textured;         /* some triangle emits through a texture */
     uint32_t *cdf[LIGHT_CHOICES], *guide[LIGHT_CHOICES]; /* NULL: nothing to choose from */
     uint32_t *distant;     /* the DISTANT ones with an angle: seen by rays that leave the scene */
     uint32_t distant_count;

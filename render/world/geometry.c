@@ -30,7 +30,7 @@ typedef struct build {
     atomic_bool failed;
 } build;
 
-static void choose_render_space(world *w, const kiln_scene *scene) {
+void world_choose_space(world *w, const kiln_scene *scene) {
     kiln_bounds b = scene->bounds;
     w->scale = 1;
     if (!(b.min[0] <= b.max[0])) return;

@@ -119,16 +119,25 @@ static void set_slices(builder *b, world_material *m, uint32_t *slice_count) {
     albedo_make_slice(1.0f / m->eta, b->world->slices + m->slice_inside);
 }
 
-/* Absorption after Beer: attenuation_color is what is left after attenuation_distance. */
-static void set_absorption(const builder *b, world_material *m, const kiln_material *from) {
-    if (!is_solid(from) || !(from->attenuation_distance > 0)) return;
+/* Absorption after Beer: attenuation_color is what is left after attenuation_distance. Every solid is a medium, also a
+ * clear one: a path that enters it must know when it leaves what is around. */
+static bool set_medium(builder *b, world_material *m, const kiln_material *from) {
+    world *w = b->world;
+    if (!is_solid(from)) return true;
+    if (w->media_count > 0xffff)
+        return report_error(b->report, KILN_CODE_LIMIT, NULL, "merge materials that are equal",
+                            "more than 65,535 materials bound a volume");
+    m->medium = w->media_count++;
+    if (!(from->attenuation_distance > 0)) return true;
     vec3 left = into_working(b, from->attenuation_color);
-    float per_unit = 1.0f / (from->attenuation_distance * (float)b->world->scale);
+    float per_unit = 1.0f / (from->attenuation_distance * (float)w->scale);
     const float least = 1e-9f; /* a colour of 0 absorbs all but a billionth over the distance */
-    m->absorption[0] = -logf(fminf(fmaxf(left.x, least), 1.0f)) * per_unit;
-    m->absorption[1] = -logf(fminf(fmaxf(left.y, least), 1.0f)) * per_unit;
-    m->absorption[2] = -logf(fminf(fmaxf(left.z, least), 1.0f)) * per_unit;
-    b->world->absorbs |= m->absorption[0] > 0 || m->absorption[1] > 0 || m->absorption[2] > 0;
+    float *a = w->media + 3 * (size_t)m->medium;
+    a[0] = -logf(fminf(fmaxf(left.x, least), 1.0f)) * per_unit;
+    a[1] = -logf(fminf(fmaxf(left.y, least), 1.0f)) * per_unit;
+    a[2] = -logf(fminf(fmaxf(left.z, least), 1.0f)) * per_unit;
+    w->absorbs |= a[0] > 0 || a[1] > 0 || a[2] > 0;
+    return true;
 }
 
 static void set_constants(const builder *b, world_material *m, const kiln_material *from) {
@@ -202,13 +211,15 @@ static bool build(builder *b, const bool *used, uint32_t threads) {
     w->materials = ARENA_ARRAY(&w->arena, world_material, w->material_count);
     w->textures = ARENA_ARRAY(&w->arena, world_texture, (size_t)textures + 1);
     w->slices = ARENA_ARRAY(&w->arena, float, (size_t)w->material_count * 2 * ALBEDO_SLICE_FLOATS);
-    if (!w->materials || !w->textures || !w->slices) return report_no_memory(b->report, "building materials");
+    w->media = ARENA_ARRAY(&w->arena, float, 3 * ((size_t)w->material_count + 1));
+    w->media_count = 1;
+    if (!w->materials || !w->textures || !w->slices || !w->media) return report_no_memory(b->report, "building materials");
     for (uint32_t i = 0; i < w->material_count; i++) {
         if (!used[i]) continue;
         world_material *m = &w->materials[i];
         const kiln_material *from = scene_material(b->scene, i);
         set_constants(b, m, from);
-        set_absorption(b, m, from);
+        if (!set_medium(b, m, from)) return false;
         if (m->kind == KIND_TRANSMISSIVE) set_slices(b, m, &slices);
         if (!set_textures(b, m, from)) return false;
         w->kinds |= 1u << m->kind;

@@ -57,8 +57,8 @@ typedef struct world_material {
     float base[3], opacity, metallic, roughness, normal_scale;
     float emission[3];
     float f0, eta, specular, specular_color[3], transmission, thin;
-    float absorption[3]; /* per length in render space */
     float alpha_cutoff;
+    uint32_t medium;           /* behind the surface: into world.media; 0: none that matters */
     int32_t slice_outside, slice_inside; /* of world.slices */
     uint32_t texture[SLOT_COUNT];        /* 1 + index into world.textures; 0: none */
     uint32_t flags;
@@ -100,9 +100,12 @@ typedef struct world {
     uint32_t kinds;      /* bits of material_kind that occur */
     uint32_t flags;      /* union of the materials' flags that occur */
     bool single_sided;   /* some surface is culled from behind */
-    bool absorbs;        /* some medium absorbs */
+    float *media;        /* absorption per length in render space, 3 each; [0] is air */
+    uint32_t media_count;
+    bool absorbs;        /* one of them is not 0 */
 
     light_table lights;
+    bool emits;          /* some surface shines, lights or unlit ones */
     struct accel *accel;
 } world;
 
@@ -112,6 +115,7 @@ bool world_create(const kiln_scene *, const kiln_decoding *, uint32_t threads, c
 void world_destroy(world *);
 
 /* The parts, in the order in which world_create calls them. */
+void world_choose_space(world *, const kiln_scene *);
 bool world_build_materials(world *, const kiln_scene *, const kiln_decoding *, uint32_t threads, kiln_report *);
 bool world_build_geometry(world *, const kiln_scene *, uint32_t threads, kiln_report *);
 /* Appends a copy of a prototype whose coordinates are relative to center. */

@@ -1,0 +1,44 @@
+/* render/accel/accel.h: which surface a ray meets first, and whether it meets any.
+ *
+ * The one place where rays reach Embree. Every ray is checked before: Debian's Embree 3 aborts on NaN, on a negative
+ * tnear and on garbage in inactive lanes. */
+#ifndef KILN_RENDER_ACCEL_ACCEL_H
+#define KILN_RENDER_ACCEL_ACCEL_H
+
+#include "render/world/world.h"
+
+typedef struct accel accel;
+
+/* Robust traversal, always: it is what keeps shared edges closed and surfaces from hitting themselves. */
+bool accel_create(world *, uint32_t threads, const char *embree_config, kiln_report *);
+void accel_destroy(accel *);
+size_t accel_bytes(const accel *);
+
+/* "3.13.5", as the library that is loaded says. */
+enum { EMBREE_VERSION_MAX = 32 };
+void embree_version(char text[EMBREE_VERSION_MAX]);
+
+#define TRIANGLE_NONE UINT32_MAX        /* the ray leaves the scene */
+#define TRIANGLE_REFUSED (UINT32_MAX - 1) /* the ray was not one: non-finite, or of no direction */
+
+/* Rays as arrays, `count` of them, or those that lanes names. Directions are of unit length. */
+typedef struct ray_lanes {
+    const float *ox, *oy, *oz, *dx, *dy, *dz;
+    const float *tnear, *tfar; /* NULL: 0, infinity */
+    const float *coverage;     /* a random number for each ray: does it stop at partial coverage? */
+    const uint32_t *lanes;     /* NULL: 0 … count − 1 */
+    uint32_t count;
+} ray_lanes;
+
+typedef struct trace_counts { uint64_t rays, refused; } trace_counts;
+
+/* For each ray: the triangle (world's number, or TRIANGLE_…), its copy, distance and barycentric place. */
+void accel_closest(const world *, const ray_lanes *, float *t, float *u, float *v, uint32_t *triangle,
+                   uint32_t *instance, trace_counts *);
+
+enum { RAY_STOPPED, RAY_REACHES, RAY_REFUSED };
+
+/* For each ray: does it reach its end? */
+void accel_visible(const world *, const ray_lanes *, uint32_t *visible, trace_counts *);
+
+#endif

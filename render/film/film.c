@@ -1,0 +1,150 @@
+#include "render/film/film.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/arena.h"
+#include "base/report.h"
+
+static const struct { uint32_t channels; } aov_rows[KILN_AOV_COUNT] = {
+#define KILN_AOV_ROW(id, name, channels, text) [KILN_AOV_##id] = {channels},
+    KILN_AOVS(KILN_AOV_ROW)
+#undef KILN_AOV_ROW
+};
+
+/* ALPHA, SAMPLES and ERROR are known from counts and replicates. */
+static bool is_summed(int aov) { return aov == KILN_AOV_ALBEDO || aov == KILN_AOV_NORMAL || aov == KILN_AOV_DEPTH; }
+
+static bool allocate(kiln_film *f) {
+    size_t pixels = (size_t)f->width * f->height;
+    f->pixels = aligned_array(pixels, sizeof *f->pixels);
+    f->counts = aligned_array(pixels, sizeof *f->counts);
+    bool done = f->pixels && f->counts;
+    if (f->desc.aovs & (1u << KILN_AOV_ALPHA | 1u << KILN_AOV_DEPTH))
+        done = done && (f->hits = aligned_array(pixels, sizeof *f->hits));
+    for (int a = 0; a < KILN_AOV_COUNT; a++)
+        if (f->desc.aovs & 1u << a && is_summed(a))
+            done = done && (f->aovs[a] = aligned_array(pixels * aov_rows[a].channels, sizeof(fixed)));
+    return done;
+}
+
+static bool check(const kiln_film_desc *d, kiln_report *report) {
+    kiln_where where = where_root("film");
+    if (d->width < 1 || d->height < 1 || d->width > 65536 || d->height > 65536)
+        return report_error(report, KILN_CODE_USAGE, &where, "give sides from 1 to 65536 pixels",
+                            "a picture of %u x %u pixels", d->width, d->height);
+    if (d->crop[0] >= d->crop[2] || d->crop[1] >= d->crop[3] || d->crop[2] > d->width || d->crop[3] > d->height)
+        return report_error(report, KILN_CODE_USAGE, &where, "give X0,Y0,X1,Y1 within the picture, X0 < X1, Y0 < Y1",
+                            "the crop %u,%u,%u,%u is not a part of %u x %u pixels", d->crop[0], d->crop[1], d->crop[2],
+                            d->crop[3], d->width, d->height);
+    if (d->aovs >> KILN_AOV_COUNT)
+        return report_error(report, KILN_CODE_USAGE, &where, NULL, "aovs 0x%x are unknown", d->aovs);
+    return true;
+}
+
+bool kiln_film_create(const kiln_film_desc *desc, kiln_film **film, kiln_report *report) {
+    *film = NULL;
+    kiln_film_desc d = *desc;
+    if (!d.crop[0] && !d.crop[1] && !d.crop[2] && !d.crop[3]) d.crop[2] = d.width, d.crop[3] = d.height;
+    if (!check(&d, report)) return false;
+    kiln_film *f = calloc(1, sizeof *f);
+    if (!f) return report_no_memory(report, "making the film");
+    f->desc = d;
+    f->width = d.crop[2] - d.crop[0];
+    f->height = d.crop[3] - d.crop[1];
+    if (!allocate(f)) {
+        kiln_film_destroy(f);
+        return report_no_memory(report, "making the film");
+    }
+    *film = f;
+    return true;
+}
+
+void kiln_film_destroy(kiln_film *f) {
+    if (!f) return;
+    free(f->pixels);
+    free(f->counts);
+    free(f->hits);
+    for (int a = 0; a < KILN_AOV_COUNT; a++) free(f->aovs[a]);
+    free(f);
+}
+
+kiln_film_desc kiln_film_describe(const kiln_film *f) { return f->desc; }
+
+static void add_to(fixed *sums, size_t pixel, const float *values, uint32_t channels) {
+    for (uint32_t k = 0; sums && k < channels; k++) sums[pixel * channels + k] += fixed_from_float(values[k]);
+}
+
+void film_add(kiln_film *f, uint32_t x, uint32_t y, const film_sample *s) {
+    size_t pixel = (size_t)y * f->width + x;
+    uint32_t replicate = f->counts[pixel]++ & (KILN_REPLICATES - 1);
+    for (int k = 0; k < 3; k++) f->pixels[pixel].sum[replicate][k] += fixed_from_float(s->radiance[k]);
+    if (f->hits) f->hits[pixel] += s->alpha > 0.0f;
+    if (!(s->alpha > 0.0f)) return;
+    add_to(f->aovs[KILN_AOV_ALBEDO], pixel, s->albedo, 3);
+    add_to(f->aovs[KILN_AOV_NORMAL], pixel, s->normal, 3);
+    add_to(f->aovs[KILN_AOV_DEPTH], pixel, &s->depth, 1);
+}
+
+void film_read_pixel(const kiln_film *f, size_t pixel, double mean[3], double variance[3]) {
+    uint32_t n = f->counts[pixel];
+    for (int k = 0; k < 3; k++) {
+        fixed total = 0;
+        double spread = 0;
+        for (uint32_t r = 0; r < KILN_REPLICATES; r++) total += f->pixels[pixel].sum[r][k];
+        mean[k] = n ? fixed_to_double(total) / n : 0;
+        for (uint32_t r = 0; r < KILN_REPLICATES; r++) {
+            uint32_t own = (n + KILN_REPLICATES - 1 - r) / KILN_REPLICATES;
+            double m = own ? fixed_to_double(f->pixels[pixel].sum[r][k]) / own : 0;
+            spread += (m - mean[k]) * (m - mean[k]);
+        }
+        variance[k] = n >= KILN_REPLICATES ? spread / (KILN_REPLICATES * (KILN_REPLICATES - 1)) : -1;
+    }
+}
+
+void kiln_film_beauty(const kiln_film *f, float *rgb) {
+    double mean[3], variance[3];
+    for (size_t i = 0; i < (size_t)f->width * f->height; i++) {
+        film_read_pixel(f, i, mean, variance);
+        for (size_t k = 0; k < 3; k++) rgb[3 * i + k] = (float)mean[k];
+    }
+}
+
+bool kiln_film_aov(const kiln_film *f, kiln_aov aov, float *values) {
+    if (!(f->desc.aovs & 1u << aov)) return false;
+    size_t pixels = (size_t)f->width * f->height, channels = aov_rows[aov].channels;
+    if (aov == KILN_AOV_ERROR) {
+        film_error_map(f, values);
+        return true;
+    }
+    for (size_t i = 0; i < pixels; i++) {
+        uint32_t n = f->counts[i];
+        if (aov == KILN_AOV_SAMPLES) values[i] = (float)n;
+        else if (aov == KILN_AOV_ALPHA) values[i] = n ? (float)((double)f->hits[i] / n) : 0.0f;
+        else {
+            uint32_t over = aov == KILN_AOV_DEPTH ? f->hits[i] : n;
+            for (size_t k = 0; k < channels; k++)
+                values[i * channels + k] = over ? (float)(fixed_to_double(f->aovs[aov][i * channels + k]) / over) : 0.0f;
+        }
+    }
+    return true;
+}
+
+uint64_t kiln_film_samples(const kiln_film *f) {
+    uint64_t sum = 0;
+    for (size_t i = 0; i < (size_t)f->width * f->height; i++) sum += f->counts[i];
+    return sum;
+}
+
+uint32_t kiln_film_spp(const kiln_film *f) {
+    uint32_t least = UINT32_MAX;
+    for (size_t i = 0; i < (size_t)f->width * f->height; i++) least = f->counts[i] < least ? f->counts[i] : least;
+    return least;
+}
+
+size_t kiln_film_bytes(const kiln_film *f) {
+    size_t pixels = (size_t)f->width * f->height, each = sizeof *f->pixels + sizeof *f->counts;
+    if (f->hits) each += sizeof *f->hits;
+    for (int a = 0; a < KILN_AOV_COUNT; a++) each += f->aovs[a] ? aov_rows[a].channels * sizeof(fixed) : 0;
+    return pixels * each;
+}

@@ -1,0 +1,65 @@
+/* render/light/environment.h: looking up and sampling the environment. Scalar kernels. */
+#ifndef KILN_RENDER_LIGHT_ENVIRONMENT_H
+#define KILN_RENDER_LIGHT_ENVIRONMENT_H
+
+#include "base/fmath.h"
+#include "base/kernel.h"
+#include "render/light/table.h"
+
+/* A direction as a place in the picture: u in turns, before rotation, and cos θ from the top. */
+KERNEL vec3 environment_direction(float u, float cos_theta) {
+    fm_pair a = fm_sincos_2pi(u - 0.5f);
+    float sin2 = 1.0f - cos_theta * cos_theta, s = sqrtf(sin2 > 0.0f ? sin2 : 0.0f);
+    return v3(s * a.cos, cos_theta, s * a.sin);
+}
+/* u in [0, 1] and v = θ/π in [0, 1], in the world: rotation is added on look-up. */
+KERNEL vec2 environment_place(vec3 d) {
+    float u = 0.5f + fm_atan2(d.z, d.x) * 0.159154943f;
+    return (vec2){u, fm_acos(fm_clamp(d.y, -1.0f, 1.0f)) * 0.318309886f};
+}
+
+typedef struct environment_value { vec3 radiance; float pdf; } environment_value;
+
+/* Radiance, bilinear, and density (per solid angle, of the texel around) at a place of the world. */
+static inline environment_value environment_look_up(const environment *e, vec2 place) {
+    float turned = place.x + e->rotation_turns, u = turned - fm_floor(turned);
+    float x = u * (float)e->width, y = place.y * (float)e->height;
+    int32_t cx = (int32_t)x, cy = (int32_t)y;
+    cx = cx < e->width ? cx : e->width - 1;
+    cy = cy < e->height ? cy : e->height - 1;
+    float xf = fm_floor(x - 0.5f), yf = fm_floor(y - 0.5f), fx = x - 0.5f - xf, fy = y - 0.5f - yf;
+    int32_t i = (int32_t)xf, j = (int32_t)yf;
+    int32_t i0 = i < 0 ? e->width - 1 : i, i1 = i + 1 < e->width ? i + 1 : 0;
+    int32_t j0 = j < 0 ? 0 : j, j1 = j + 1 < e->height ? j + 1 : e->height - 1;
+    const float *row0 = e->texels + 4 * (size_t)j0 * (size_t)e->width, *row1 = e->texels + 4 * (size_t)j1 * (size_t)e->width;
+    const float *a = row0 + 4 * i0, *b = row0 + 4 * i1, *c = row1 + 4 * i0, *d = row1 + 4 * i1;
+    environment_value r;
+    float mixed[3];
+    for (int k = 0; k < 3; k++) {
+        float top = a[k] + fx * (b[k] - a[k]), bottom = c[k] + fx * (d[k] - c[k]);
+        mixed[k] = top + fy * (bottom - top);
+    }
+    r.radiance = v3_load(mixed);
+    r.pdf = e->texels[4 * ((size_t)cy * (size_t)e->width + (size_t)cx) + 3];
+    return r;
+}
+
+/* A direction by importance: a texel by inversion, a place in it uniform in solid angle. Fills the fields of the light's
+ * record that light_sample_environment reads. */
+static inline void environment_pick(const environment *e, vec2 u, light *l) {
+    float across, down;
+    uint32_t w = (uint32_t)e->width;
+    uint32_t row = distribution_pick(e->row_cdf, e->row_guide, (uint32_t)e->height, u.y, &down);
+    uint32_t column = distribution_pick(e->texel_cdf + (size_t)row * (w + 1), e->texel_guide + (size_t)row * w, w, u.x,
+                                        &across);
+    float step = 0.5f / (float)e->height;
+    float top = fm_sincos_2pi((float)(int32_t)row * step).cos, bottom = fm_sincos_2pi((float)(int32_t)(row + 1) * step).cos;
+    float turns = ((float)(int32_t)column + across) / (float)e->width - e->rotation_turns;
+    float cos_theta = fm_clamp(top + down * (bottom - top), -1.0f, 1.0f);
+    environment_value v = environment_look_up(e, (vec2){turns, fm_acos(cos_theta) * 0.318309886f});
+    l->position = v3(turns, cos_theta, 0.0f);
+    l->radiance = v.radiance;
+    l->area = e->texels[4 * ((size_t)row * w + column) + 3];
+}
+
+#endif

@@ -1,0 +1,137 @@
+#include "render/pass.h"
+
+#include <stdlib.h>
+#include <xmmintrin.h>
+
+#include "base/arena.h"
+#include "base/clock.h"
+#include "base/threads.h"
+
+/* Small enough that its pixels stay coherent, large enough to fill a batch at one sample a pixel. */
+enum { TILE = 32 };
+
+bool pass_make_workers(pass *p) {
+    p->workers = array_alloc(p->threads, sizeof *p->workers);
+    for (uint32_t t = 0; p->workers && t < p->threads; t++) {
+        pass_worker *w = &p->workers[t];
+        w->batch = aligned_array(1, sizeof *w->batch);
+        w->samples = array_alloc(BATCH_PATHS, sizeof *w->samples);
+        for (int d = 0; d < KILN_DISCARD_COUNT; d++) w->discarded_first[d] = UINT64_MAX;
+        if (!w->batch || !w->samples) return false;
+    }
+    return p->workers != NULL;
+}
+
+void pass_free_workers(pass *p) {
+    for (uint32_t t = 0; p->workers && t < p->threads; t++) {
+        free(p->workers[t].batch);
+        free(p->workers[t].samples);
+    }
+    free(p->workers);
+    p->workers = NULL;
+}
+
+uint64_t pass_samples(const pass *p) {
+    uint64_t sum = 0;
+    for (uint32_t t = 0; t < p->threads; t++) sum += p->workers[t].traced;
+    return sum;
+}
+
+static void discard(const pass *p, pass_worker *w, kiln_discard cause, const path_sample *s) {
+    uint64_t place = (uint64_t)s->y * p->context->width + s->x;
+    w->discarded[cause]++;
+    if (place < w->discarded_first[cause]) w->discarded_first[cause] = place;
+}
+
+/* A radiance that the film can hold; what is not one is counted and black. */
+static void check(const pass *p, pass_worker *w, const path_sample *at, film_sample *s) {
+    bool fits = true, real = true;
+    for (int k = 0; k < 3; k++) {
+        real = real && s->radiance[k] >= 0.0f && s->radiance[k] < INFINITY;
+        fits = fits && fixed_fits(s->radiance[k]);
+    }
+    if (real && fits) return;
+    discard(p, w, real ? KILN_DISCARD_OVERFLOW : KILN_DISCARD_RADIANCE, at);
+    s->radiance[0] = s->radiance[1] = s->radiance[2] = 0.0f;
+}
+
+static void store(const pass *p, pass_worker *w, uint32_t count) {
+    const path_output *o = &w->batch->out;
+    const uint32_t *crop = p->film->desc.crop;
+    for (uint32_t i = 0; i < count; i++) {
+        const path_sample *at = &w->samples[i];
+        film_sample s = {.radiance = {o->r[i], o->g[i], o->b[i]}, .alpha = o->alpha[i], .depth = o->depth[i]};
+        for (int k = 0; k < 3; k++) s.albedo[k] = o->albedo[k][i], s.normal[k] = o->normal[k][i];
+        if (o->refused[i]) discard(p, w, KILN_DISCARD_RAY, at);
+        check(p, w, at, &s);
+        film_add(p->film, at->x - crop[0], at->y - crop[1], &s);
+        const float beyond[3] = {o->beyond_r[i], o->beyond_g[i], o->beyond_b[i]};
+        for (int k = 0; k < 3; k++)
+            if (fixed_fits(beyond[k])) w->beyond[k] += fixed_from_float(beyond[k]);
+    }
+    w->traced += count;
+}
+
+static bool must_stop(pass *p, uint32_t thread) {
+    if (thread == 0 && p->tick) p->tick(p->tick_user);
+    if ((p->cancel && *p->cancel) || (p->deadline > 0 && clock_seconds() >= p->deadline)) atomic_store(&p->stopped, true);
+    return atomic_load(&p->stopped);
+}
+
+static void trace(pass *p, uint32_t thread, uint32_t count) {
+    pass_worker *w = &p->workers[thread];
+    p->tracer(p->context, w->samples, count, w->batch);
+    store(p, w, count);
+}
+
+/* Even bits of a Morton number: neighbours in it are neighbours in the tile. */
+static uint32_t even_bits(uint32_t m) {
+    m &= 0x55555555u;
+    m = (m | m >> 1) & 0x33333333u;
+    m = (m | m >> 2) & 0x0f0f0f0fu;
+    return (m | m >> 4) & 0x00ff00ffu;
+}
+
+static uint32_t tiles_across(const kiln_film *f) { return (f->width + TILE - 1) / TILE; }
+static uint32_t tiles_down(const kiln_film *f) { return (f->height + TILE - 1) / TILE; }
+
+/* A permutation of the tiles: step through them by a number that has no factor in common with their count. */
+static size_t shuffled(const pass *p, size_t tile) {
+    size_t count = (size_t)tiles_across(p->film) * tiles_down(p->film);
+    if (!p->shuffle) return tile;
+    size_t step = (size_t)(p->shuffle % count) | 1, a = step, b = count;
+    while (b) { /* Euclid */
+        size_t rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a == 1 ? (tile * step + (size_t)(p->shuffle >> 32) % count) % count : count - 1 - tile;
+}
+
+static void run_tile(void *context, size_t item, uint32_t thread) {
+    pass *p = context;
+    const kiln_film *f = p->film;
+    size_t tile = shuffled(p, item);
+    uint32_t x0 = (uint32_t)(tile % tiles_across(f)) * TILE, y0 = (uint32_t)(tile / tiles_across(f)) * TILE, count = 0;
+    path_sample *samples = p->workers[thread].samples;
+    _mm_setcsr(_mm_getcsr() | 0x8040); /* denormals are zero, in and out: Embree asks for it */
+    for (uint32_t m = 0; m < TILE * TILE; m++) {
+        uint32_t x = x0 + even_bits(m), y = y0 + even_bits(m >> 1);
+        if (x >= f->width || y >= f->height) continue;
+        uint32_t n = f->counts[(size_t)y * f->width + x];
+        for (; n < p->target; n++) {
+            samples[count++] = (path_sample){x + f->desc.crop[0], y + f->desc.crop[1], n};
+            if (count < p->batch_size) continue;
+            if (must_stop(p, thread)) return;
+            trace(p, thread, count);
+            count = 0;
+        }
+    }
+    if (count && !must_stop(p, thread)) trace(p, thread, count);
+}
+
+void pass_run(pass *p) {
+    unsigned csr = _mm_getcsr();
+    threads_for(p->threads, (size_t)tiles_across(p->film) * tiles_down(p->film), run_tile, p);
+    _mm_setcsr(csr); /* the calling thread's */
+}

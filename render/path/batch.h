@@ -1,0 +1,143 @@
+/* render/path/batch.h: about a thousand paths that advance together, as a structure of arrays.
+ *
+ * All paths of a batch are at the same depth. A stage is a loop over lanes [0, n), n a multiple of 16: the lanes that
+ * fill it up are copies of a path with no throughput, whose radiance goes to a slot that nobody reads. Arrays are parts
+ * of one struct, so that the compiler knows that they do not overlap, and a little longer than a power of two, so that
+ * equal indices do not compete for the same cache lines. */
+#ifndef KILN_RENDER_PATH_BATCH_H
+#define KILN_RENDER_PATH_BATCH_H
+
+#include <stdint.h>
+
+#include "render/accel/accel.h"
+#include "render/bsdf/bsdf.h"
+#include "render/world/world.h"
+
+enum {
+    BATCH_PATHS = 1024,
+    LANE_GROUP = 16,
+    LANES = BATCH_PATHS + KIND_COUNT * LANE_GROUP + 2 * LANE_GROUP, /* a group's end for each kind, and the padding */
+    SLOT_NOWHERE = BATCH_PATHS /* where radiance of filling lanes goes */
+};
+
+/* What a path carries from bounce to bounce: moved when dead paths are closed up. */
+#define PATH_STATE(X)                                                                                                  \
+    X(float, ox) X(float, oy) X(float, oz)       /* origin of the ray */                                               \
+    X(float, dx) X(float, dy) X(float, dz)       /* direction, unit length */                                          \
+    X(float, tr) X(float, tg) X(float, tb)       /* throughput */                                                      \
+    X(float, lr) X(float, lg) X(float, lb)       /* radiance collected */                                              \
+    X(float, pdf)                                /* of the direction; 0: from the camera or a delta lobe */            \
+    X(float, squeeze)                            /* η² that the throughput was divided by, for roulette */             \
+    X(uint32_t, slot)                            /* which of the batch's samples this is */                            \
+    X(uint32_t, seed) X(uint32_t, index)         /* sample_point */                                                    \
+    X(uint64_t, media)                           /* stack of media around the origin, four of 16 bits, top lowest */
+
+/* Where the ray has met a surface: moved with the path, once. */
+#define PATH_HIT(X) X(float, t) X(float, u) X(float, v) X(uint32_t, triangle) X(uint32_t, instance)
+
+#define LANE_ARRAY(type, name) _Alignas(64) type name[LANES];
+typedef struct path_state { PATH_STATE(LANE_ARRAY) } path_state;
+typedef struct path_hit { PATH_HIT(LANE_ARRAY) } path_hit;
+
+/* A triangle's corners, in render space. */
+#define TRIANGLE_FIELDS(X)                                                                                             \
+    X(float, p0x) X(float, p0y) X(float, p0z) X(float, p1x) X(float, p1y) X(float, p1z)                                \
+    X(float, p2x) X(float, p2y) X(float, p2z)                                                                          \
+    X(float, n0x) X(float, n0y) X(float, n0z) X(float, n1x) X(float, n1y) X(float, n1z)                                \
+    X(float, n2x) X(float, n2y) X(float, n2z)                                                                          \
+    X(float, s0) X(float, t0) X(float, s1) X(float, t1) X(float, s2) X(float, t2) /* UV */                             \
+    X(float, side) X(float, magnitude)                                            /* of the copy */                    \
+    X(uint32_t, material)
+
+/* The point that is shaded. Normals are on wo's side. */
+#define POINT_FIELDS(X)                                                                                                \
+    X(float, px) X(float, py) X(float, pz)                                                                             \
+    X(float, gx) X(float, gy) X(float, gz)       /* geometric normal */                                                \
+    X(float, nx) X(float, ny) X(float, nz)       /* shading normal */                                                  \
+    X(float, reach)                              /* rays leave this far along the geometric normal */                  \
+    X(float, area)                               /* of the triangle */                                                 \
+    X(float, front)                              /* 1: seen from the front, 0: from behind */                          \
+    X(float, tu) X(float, tv)                    /* UV of the first set */
+
+/* What the material says there. */
+#define MATERIAL_FIELDS(X)                                                                                             \
+    X(float, base_r) X(float, base_g) X(float, base_b)                                                                 \
+    X(float, metallic) X(float, roughness) X(float, specular) X(float, f0)                                             \
+    X(float, tint_r) X(float, tint_g) X(float, tint_b) /* of the coat's F0 */                                          \
+    X(float, transmission) X(float, eta) X(float, thin)                                                                \
+    X(int32_t, near_slice) X(int32_t, far_slice)                                                                       \
+    X(uint32_t, medium)                          /* behind the surface; 0: none */                                     \
+    X(float, emit_r) X(float, emit_g) X(float, emit_b)                                                                 \
+    X(float, map_x) X(float, map_y) X(float, map_z) /* tangent-space normal */                                         \
+    X(float, tan_x) X(float, tan_y) X(float, tan_z) X(float, tan_w)
+
+/* The light sample. */
+#define LIGHT_FIELDS(X)                                                                                                \
+    X(float, wx) X(float, wy) X(float, wz)       /* direction to the light */                                          \
+    X(float, sox) X(float, soy) X(float, soz)    /* shadow ray */                                                      \
+    X(float, sdx) X(float, sdy) X(float, sdz)                                                                          \
+    X(float, distance)                           /* of the light, for media */                                         \
+    X(float, tx) X(float, ty) X(float, tz)       /* where the shadow ray ends, for lights that have a place */         \
+    X(float, cr) X(float, cg) X(float, cb)       /* radiance, then what it contributes */                              \
+    X(float, light_pdf)                          /* density of the direction times the light's probability */          \
+    X(float, parallel)                           /* 1: nothing can hit the light: no weighting */                      \
+    X(uint32_t, visible)
+
+/* The chosen light, as a kernel reads it. */
+#define CHOSEN_FIELDS(X)                                                                                               \
+    X(float, qx) X(float, qy) X(float, qz) X(float, e1x) X(float, e1y) X(float, e1z)                                   \
+    X(float, e2x) X(float, e2y) X(float, e2z) X(float, ax) X(float, ay) X(float, az)                                   \
+    X(float, rr) X(float, rg) X(float, rb)       /* radiance */                                                        \
+    X(float, light_area) X(float, light_error) X(float, spot_scale) X(float, spot_offset)                              \
+    X(float, one_minus_cos) X(float, two_sided) X(float, probability)                                                  \
+    X(uint32_t, light) X(uint32_t, light_kind)
+
+/* Random numbers of a bounce. */
+#define RANDOM_FIELDS(X)                                                                                               \
+    X(float, u_light_x) X(float, u_light_y) X(float, u_pick) X(float, u_shadow)                                        \
+    X(float, u_bsdf_x) X(float, u_bsdf_y) X(float, u_lobe) X(float, u_roulette) X(float, u_coverage)
+
+typedef struct path_scratch {
+    TRIANGLE_FIELDS(LANE_ARRAY)
+    POINT_FIELDS(LANE_ARRAY)
+    MATERIAL_FIELDS(LANE_ARRAY)
+    LIGHT_FIELDS(LANE_ARRAY)
+    CHOSEN_FIELDS(LANE_ARRAY)
+    RANDOM_FIELDS(LANE_ARRAY)
+    LANE_ARRAY(float, tnear)
+    LANE_ARRAY(float, tfar)
+    LANE_ARRAY(uint32_t, list)
+    LANE_ARRAY(uint32_t, order)
+} path_scratch;
+
+/* Results, by slot. */
+typedef struct path_output {
+    float r[BATCH_PATHS + 1], g[BATCH_PATHS + 1], b[BATCH_PATHS + 1];
+    float beyond_r[BATCH_PATHS + 1], beyond_g[BATCH_PATHS + 1], beyond_b[BATCH_PATHS + 1]; /* found past the depth limit */
+    float alpha[BATCH_PATHS + 1], depth[BATCH_PATHS + 1];
+    float albedo[3][BATCH_PATHS + 1], normal[3][BATCH_PATHS + 1];
+    uint8_t refused[BATCH_PATHS + 1]; /* Embree was spared a ray of this sample */
+} path_output;
+
+/* Lanes of one material kind. */
+typedef struct lane_range { uint32_t first, end; } lane_range;
+
+typedef struct batch {
+    path_state states[2]; /* the current one, and where it moves to */
+    path_hit hits[2];
+    path_scratch scratch;
+    path_output out;
+    uint32_t current; /* of states and hits */
+    uint32_t n;       /* lanes, a multiple of LANE_GROUP */
+    uint32_t depth;   /* scattering events so far */
+    lane_range kinds[KIND_COUNT];
+    trace_counts camera_rays, bounce_rays, shadow_rays;
+} batch;
+
+static inline path_state *batch_state(batch *b) { return &b->states[b->current]; }
+static inline path_hit *batch_hit(batch *b) { return &b->hits[b->current]; }
+
+/* In front of a loop over lanes: iterations are independent. */
+#define LANE_LOOP _Pragma("GCC ivdep") for
+
+#endif

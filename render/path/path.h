@@ -1,0 +1,44 @@
+/* render/path/path.h: the estimator: camera samples become radiance. */
+#ifndef KILN_RENDER_PATH_PATH_H
+#define KILN_RENDER_PATH_PATH_H
+
+#include "kiln/render.h"
+#include "render/path/batch.h"
+#include "render/path/camera.h"
+#include "render/sample/filter.h"
+#include "render/sample/sampler.h"
+
+/* What all paths of a render share. Immutable. */
+typedef struct path_context {
+    const world *world;
+    camera camera;
+    pixel_filter filter;
+    uint32_t width, height; /* of the whole picture */
+    uint32_t seed;
+    int independent;        /* sampler */
+    kiln_estimator estimator;
+    const uint32_t *light_cdf, *light_guide; /* NULL: no light is sampled */
+    uint32_t max_depth;
+    kiln_roulette_kind roulette;
+    float roulette_p;
+    uint32_t roulette_min;
+    kiln_background background;
+    vec3 background_color;
+    uint32_t aovs;
+} path_context;
+
+/* One sample of one pixel. */
+typedef struct path_sample { uint32_t x, y, n; } path_sample;
+
+/* Traces count ≤ BATCH_PATHS samples to their end; b->out then holds their results by position in samples. */
+typedef void path_tracer(const path_context *, const path_sample *samples, uint32_t count, batch *);
+
+/* The same code, compiled for x86-64-v2, v3 and v4: the wanted one, or for NULL the best that this machine has, with its
+ * name; NULL when it has not the wanted one. */
+path_tracer *path_choose_tracer(const char *wanted, const char **name);
+
+/* One in so many paths that reach the depth limit goes on for PROBE_DEPTHS more, to measure what the limit cuts off. */
+enum { PROBE_EVERY = 32, PROBE_DEPTHS = 64 };
+static inline int path_is_probe(uint32_t seed, uint32_t index) { return hash_pair(seed, index) % PROBE_EVERY == 0; }
+
+#endif

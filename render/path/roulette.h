@@ -1,0 +1,32 @@
+/* render/path/roulette.h: which paths go on. Scalar kernels.
+ *
+ * Surviving with probability p and dividing by p keeps the expectation. FIXED takes the same p at every bounce.
+ * THROUGHPUT takes the largest channel of the throughput, which is the product over the bounces so far of
+ * f cos/(pdf p_i); bounces under the minimum depth are guaranteed, p_i = 1. Radiance that refraction has squeezed into
+ * a denser medium (÷ η²) will be released again and counts in full. */
+#ifndef KILN_RENDER_PATH_ROULETTE_H
+#define KILN_RENDER_PATH_ROULETTE_H
+
+#include "base/fmath.h"
+#include "render/path/path.h"
+
+/* 0.99: two mirrors facing each other absorb nothing; a path between them must end all the same. */
+#define ROULETTE_MOST 0.99f
+
+typedef struct roulette { int fixed, by_throughput; float p; } roulette;
+
+static inline roulette roulette_make(const path_context *c, uint32_t depth) {
+    int beyond = depth >= c->max_depth; /* probes must end soon whatever the policy is */
+    return (roulette){.fixed = c->roulette == KILN_ROULETTE_FIXED && !beyond,
+                      .by_throughput = (c->roulette == KILN_ROULETTE_THROUGHPUT && depth >= c->roulette_min) || beyond,
+                      .p = c->roulette_p};
+}
+
+KERNEL float roulette_survival(const roulette *r, vec3 throughput, float squeeze) {
+    float largest = fm_clamp(v3_max(throughput) * squeeze, 0.0f, ROULETTE_MOST);
+    float survival = r->by_throughput ? largest : 1.0f;
+    survival = r->fixed ? r->p : survival;
+    return survival > 0.0f ? survival : 1.0f; /* a dead path needs no roulette */
+}
+
+#endif

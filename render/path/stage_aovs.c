@@ -1,0 +1,30 @@
+#include "render/path/shading.h"
+#include "render/path/stages.h"
+
+KERNEL void write_albedo(unsigned mask, const path_context *c, batch *b, lane_range lanes) {
+    const path_state *s = batch_state(b);
+    path_output *o = &b->out;
+    for (uint32_t i = lanes.first; i < lanes.end; i++) {
+        shading p = shading_load(mask, s, &b->scratch, i, c->world->slices);
+        vec3 a = bsdf_albedo(mask, &p.bsdf);
+        o->albedo[0][s->slot[i]] = a.x, o->albedo[1][s->slot[i]] = a.y, o->albedo[2][s->slot[i]] = a.z;
+    }
+}
+
+void STAGE(aovs)(const path_context *c, batch *b) {
+    const path_state *s = batch_state(b);
+    const path_scratch *x = &b->scratch;
+    path_output *o = &b->out;
+    vec3 axis = v3_neg(c->camera.back);
+    float metres = (float)(1.0 / c->world->scale);
+    for (uint32_t i = 0; i < b->n; i++) {
+        uint32_t slot = s->slot[i];
+        o->normal[0][slot] = x->nx[i], o->normal[1][slot] = x->ny[i], o->normal[2][slot] = x->nz[i];
+        vec3 from = v3_sub(v3(x->px[i], x->py[i], x->pz[i]), c->camera.origin);
+        o->depth[slot] = v3_dot(from, axis) * metres;
+    }
+    if (!(c->aovs & 1u << KILN_AOV_ALBEDO)) return;
+    write_albedo(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
+    write_albedo(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
+    write_albedo(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
+}

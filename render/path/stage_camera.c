@@ -1,0 +1,41 @@
+#include "render/path/stages.h"
+
+void STAGE(camera)(const path_context *c, const path_sample *samples, uint32_t count, batch *b) {
+    path_state *s = batch_state(b);
+    path_scratch *x = &b->scratch;
+    b->n = lanes_round_up(count);
+    b->depth = 0;
+    for (uint32_t i = 0; i < b->n; i++) {
+        const path_sample *sample = &samples[i < count ? i : 0];
+        sample_point p = sample_point_make(c->seed, sample->y << 16 | sample->x, sample->n);
+        s->slot[i] = i < count ? i : SLOT_NOWHERE;
+        s->seed[i] = p.seed;
+        s->index[i] = p.index;
+        b->out.refused[s->slot[i]] = 0;
+        b->out.beyond_r[s->slot[i]] = b->out.beyond_g[s->slot[i]] = b->out.beyond_b[s->slot[i]] = 0.0f;
+        x->px[i] = (float)(int32_t)sample->x;
+        x->py[i] = (float)(int32_t)sample->y;
+    }
+    float across = 2.0f / (float)(int32_t)c->width, down = 2.0f / (float)(int32_t)c->height;
+    int independent = c->independent;
+    const camera *cam = &c->camera;
+    const pixel_filter *filter = &c->filter;
+    LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
+        sample_point p = {s->index[i], s->seed[i]};
+        vec2 pixel = sample_pair(independent, p, SAMPLE_PIXEL, 0);
+        vec2 lens = sample_pair(independent, p, SAMPLE_LENS, 0);
+        float px = x->px[i] + 0.5f + pixel_filter_offset(filter, pixel.x);
+        float py = x->py[i] + 0.5f + pixel_filter_offset(filter, pixel.y);
+        camera_ray r = camera_ray_at(cam, px * across - 1.0f, 1.0f - py * down, lens);
+        s->ox[i] = r.origin.x, s->oy[i] = r.origin.y, s->oz[i] = r.origin.z;
+        s->dx[i] = r.direction.x, s->dy[i] = r.direction.y, s->dz[i] = r.direction.z;
+        x->tnear[i] = r.near;
+        x->tfar[i] = r.far;
+        float alive = s->slot[i] == SLOT_NOWHERE ? 0.0f : 1.0f;
+        s->tr[i] = s->tg[i] = s->tb[i] = alive;
+        s->lr[i] = s->lg[i] = s->lb[i] = 0.0f;
+        s->pdf[i] = 0.0f;
+        s->squeeze[i] = 1.0f;
+        s->media[i] = 0;
+    }
+}

@@ -1,0 +1,35 @@
+#include "render/path/estimate.h"
+#include "render/path/stages.h"
+
+/* The probability that a light sample would have chosen this triangle, left in light_pdf; single-sided emitters seen
+ * from behind are dark. */
+static void find_lights(const path_context *c, batch *b) {
+    const world *w = c->world;
+    const path_hit *h = batch_hit(b);
+    path_scratch *x = &b->scratch;
+    for (uint32_t i = 0; i < b->n; i++) {
+        uint32_t number = w->triangle_light ? w->triangle_light[h->triangle[i]] : LIGHT_NONE;
+        uint32_t which = w->instances[h->instance[i]].light_base + number;
+        bool known = number != LIGHT_NONE && c->light_cdf;
+        x->light_pdf[i] = known ? distribution_probability(c->light_cdf, which) : 0.0f;
+        const world_material *m = &w->materials[x->material[i]];
+        bool shines = x->front[i] > 0.5f || m->flags & MATERIAL_DOUBLE_SIDED || m->kind == KIND_TRANSMISSIVE;
+        if (!shines) x->emit_r[i] = x->emit_g[i] = x->emit_b[i] = 0.0f;
+    }
+}
+
+void STAGE(emission)(const path_context *c, batch *b) {
+    find_lights(c, b);
+    path_state *s = batch_state(b);
+    const path_hit *h = batch_hit(b);
+    const path_scratch *x = &b->scratch;
+    kiln_estimator estimator = c->estimator;
+    LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
+        vec3 n = {x->gx[i], x->gy[i], x->gz[i]}, d = {s->dx[i], s->dy[i], s->dz[i]};
+        float light_pdf = x->light_pdf[i] * light_triangle_pdf(h->t[i], v3_dot(n, d), x->area[i]);
+        float weight = estimate_hit_weight(estimator, s->pdf[i], light_pdf);
+        s->lr[i] += s->tr[i] * x->emit_r[i] * weight;
+        s->lg[i] += s->tg[i] * x->emit_g[i] * weight;
+        s->lb[i] += s->tb[i] * x->emit_b[i] * weight;
+    }
+}

@@ -1,0 +1,70 @@
+#include "render/light/light.h"
+#include "render/path/estimate.h"
+#include "render/path/stages.h"
+
+/* Suns of a visible size: their disk is seen by every ray that leaves the scene into it. */
+static vec3 sun_radiance(const path_context *c, vec3 d, float pdf) {
+    const light_table *t = &c->world->lights;
+    vec3 sum = v3_splat(0.0f);
+    for (uint32_t k = 0; k < t->distant_count; k++) {
+        const light *l = &t->lights[t->distant[k]];
+        vec3 off = v3_add(d, l->axis); /* 1 − cos = |d − toward|²/2: exact for small disks */
+        if (0.5f * v3_dot(off, off) > l->one_minus_cos) continue;
+        float probability = c->light_cdf ? distribution_probability(c->light_cdf, t->distant[k]) : 0.0f;
+        float light_pdf = probability * (0.159154943f / l->one_minus_cos);
+        sum = v3_madd(sum, estimate_hit_weight(c->estimator, pdf, light_pdf), l->radiance);
+    }
+    return sum;
+}
+
+static void add(path_state *s, uint32_t i, vec3 radiance) {
+    s->lr[i] += s->tr[i] * radiance.x;
+    s->lg[i] += s->tg[i] * radiance.y;
+    s->lb[i] += s->tb[i] * radiance.z;
+}
+
+static void add_environment(const path_context *c, batch *b, uint32_t count) {
+    const environment *e = &c->world->lights.environment;
+    path_state *s = batch_state(b);
+    path_scratch *x = &b->scratch;
+    LANE_LOOP (uint32_t k = 0; k < count; k++) {
+        uint32_t i = x->list[k];
+        vec2 place = environment_place(v3(s->dx[i], s->dy[i], s->dz[i]));
+        x->tu[k] = place.x;
+        x->tv[k] = place.y;
+    }
+    float probability = c->light_cdf ? distribution_probability(c->light_cdf, e->light) : 0.0f;
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t i = x->list[k];
+        environment_value v = environment_look_up(e, (vec2){x->tu[k], x->tv[k]});
+        float weight = estimate_hit_weight(c->estimator, s->pdf[i], probability * v.pdf);
+        add(s, i, v3_scale(v.radiance, weight));
+    }
+}
+
+/* What a camera ray that meets nothing shows. */
+static void show_background(const path_context *c, batch *b, uint32_t count) {
+    path_state *s = batch_state(b);
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t i = b->scratch.list[k];
+        b->out.alpha[s->slot[i]] = 0.0f;
+        if (c->background == KILN_BACKGROUND_COLOR) add(s, i, c->background_color);
+    }
+}
+
+void STAGE(escape)(const path_context *c, batch *b) {
+    path_state *s = batch_state(b);
+    const path_hit *h = batch_hit(b);
+    uint32_t *list = b->scratch.list, count = 0;
+    bool first = b->depth == 0;
+    for (uint32_t i = 0; first && i < b->n; i++) b->out.alpha[s->slot[i]] = 1.0f;
+    for (uint32_t i = 0; i < b->n; i++)
+        if (h->triangle[i] == TRIANGLE_NONE) list[count++] = i;
+    if (first) show_background(c, b, count);
+    if (first && c->background != KILN_BACKGROUND_ENVIRONMENT) return;
+    if (c->world->lights.environment.present) add_environment(c, b, count);
+    for (uint32_t k = 0; c->world->lights.distant_count && k < count; k++) {
+        uint32_t i = list[k];
+        add(s, i, sun_radiance(c, v3(s->dx[i], s->dy[i], s->dz[i]), s->pdf[i]));
+    }
+}

@@ -1,0 +1,76 @@
+#include "render/light/light.h"
+#include "render/path/stages.h"
+
+/* Which light, and its record. */
+static void choose(const path_context *c, batch *b) {
+    const light_table *t = &c->world->lights;
+    path_scratch *x = &b->scratch;
+    for (uint32_t i = 0; i < b->n; i++) {
+        float rest;
+        uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, x->u_pick[i], &rest);
+        light l = t->lights[k];
+        if (l.kind == LIGHT_ENVIRONMENT)
+            environment_pick(&t->environment, (vec2){x->u_light_x[i], x->u_light_y[i]}, &l);
+        x->probability[i] = distribution_probability(c->light_cdf, k);
+        x->light[i] = k;
+        x->light_kind[i] = (uint32_t)l.kind;
+        x->qx[i] = l.position.x, x->qy[i] = l.position.y, x->qz[i] = l.position.z;
+        x->e1x[i] = l.e1.x, x->e1y[i] = l.e1.y, x->e1z[i] = l.e1.z;
+        x->e2x[i] = l.e2.x, x->e2y[i] = l.e2.y, x->e2z[i] = l.e2.z;
+        x->ax[i] = l.axis.x, x->ay[i] = l.axis.y, x->az[i] = l.axis.z;
+        x->rr[i] = l.radiance.x, x->rg[i] = l.radiance.y, x->rb[i] = l.radiance.z;
+        x->light_area[i] = l.area, x->light_error[i] = l.error;
+        x->spot_scale[i] = l.spot_scale, x->spot_offset[i] = l.spot_offset;
+        x->one_minus_cos[i] = l.one_minus_cos, x->two_sided[i] = l.two_sided;
+    }
+}
+
+KERNEL void sample(unsigned kinds, batch *b) {
+    path_scratch *x = &b->scratch;
+    LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
+        light l = {.kind = (light_kind)x->light_kind[i],
+                   .position = {x->qx[i], x->qy[i], x->qz[i]},
+                   .e1 = {x->e1x[i], x->e1y[i], x->e1z[i]},
+                   .e2 = {x->e2x[i], x->e2y[i], x->e2z[i]},
+                   .axis = {x->ax[i], x->ay[i], x->az[i]},
+                   .radiance = {x->rr[i], x->rg[i], x->rb[i]},
+                   .area = x->light_area[i],
+                   .error = x->light_error[i],
+                   .spot_scale = x->spot_scale[i],
+                   .spot_offset = x->spot_offset[i],
+                   .one_minus_cos = x->one_minus_cos[i],
+                   .two_sided = x->two_sided[i]};
+        vec3 p = {x->px[i], x->py[i], x->pz[i]};
+        light_sampled r = light_sample(kinds, &l, p, (vec2){x->u_light_x[i], x->u_light_y[i]});
+        x->wx[i] = r.wi.x, x->wy[i] = r.wi.y, x->wz[i] = r.wi.z;
+        x->tx[i] = r.target.x, x->ty[i] = r.target.y, x->tz[i] = r.target.z;
+        x->distance[i] = r.distance;
+        x->cr[i] = r.radiance.x, x->cg[i] = r.radiance.y, x->cb[i] = r.radiance.z;
+        x->light_pdf[i] = r.pdf * x->probability[i];
+        x->parallel[i] = r.parallel ? 1.0f : 0.0f;
+    }
+}
+
+/* Textured emitters: what their texture says at the point. */
+static void apply_textures(const world *w, batch *b) {
+    path_scratch *x = &b->scratch;
+    for (uint32_t i = 0; i < b->n; i++) {
+        const light *l = &w->lights.lights[x->light[i]];
+        if (!l->texture) continue;
+        vec2 at = warp_triangle((vec2){x->u_light_x[i], x->u_light_y[i]});
+        float b0 = 1.0f - at.x - at.y;
+        texel t = texture_sample(&w->textures[l->texture - 1],
+                                 b0 * l->uv[0][0] + at.x * l->uv[1][0] + at.y * l->uv[2][0],
+                                 b0 * l->uv[0][1] + at.x * l->uv[1][1] + at.y * l->uv[2][1]);
+        x->cr[i] *= t.r, x->cg[i] *= t.g, x->cb[i] *= t.b;
+    }
+}
+
+void STAGE(light)(const path_context *c, batch *b) {
+    const light_table *t = &c->world->lights;
+    choose(c, b);
+    if (t->kinds == KIND(LIGHT_TRIANGLE)) sample(KIND(LIGHT_TRIANGLE), b);
+    else if (t->kinds == KIND(LIGHT_ENVIRONMENT)) sample(KIND(LIGHT_ENVIRONMENT), b);
+    else sample(KIND(LIGHT_KINDS) - 1, b);
+    if (t->textured) apply_textures(c->world, b);
+}

@@ -1,0 +1,65 @@
+#include "render/path/stages.h"
+
+/* Layers of culled surfaces that a camera ray looks through before it gives up: more than any asset stacks. */
+enum { CULLED_LAYERS = 1024 };
+
+static bool is_culled(const world *w, const path_state *s, const path_hit *h, uint32_t i) {
+    if (h->triangle[i] >= TRIANGLE_REFUSED) return false;
+    const world_material *m = &w->materials[w->triangle_material[h->triangle[i]]];
+    if (m->flags & MATERIAL_DOUBLE_SIDED || m->kind == KIND_TRANSMISSIVE) return false;
+    const uint32_t *v = w->triangles + 3 * (size_t)h->triangle[i];
+    const world_instance *copy = &w->instances[h->instance[i]];
+    vec3 p0 = v3_load(w->vertices[v[0]].p);
+    vec3 e1 = v3_sub(v3_load(w->vertices[v[1]].p), p0), e2 = v3_sub(v3_load(w->vertices[v[2]].p), p0);
+    vec3 n = v3_cross(e1, e2), d = v3(s->dx[i], s->dy[i], s->dz[i]);
+    if (h->instance[i]) {
+        const float *m3 = copy->normal;
+        n = v3(m3[0] * n.x + m3[1] * n.y + m3[2] * n.z, m3[3] * n.x + m3[4] * n.y + m3[5] * n.z,
+               m3[6] * n.x + m3[7] * n.y + m3[8] * n.z);
+    }
+    return v3_dot(n, d) > 0.0f;
+}
+
+/* Rays of the camera go on behind what they see from behind. */
+static void look_through(const path_context *c, batch *b, ray_lanes *rays) {
+    path_state *s = batch_state(b);
+    path_hit *h = batch_hit(b);
+    path_scratch *x = &b->scratch;
+    uint32_t count = b->n;
+    for (int layer = 0; count && layer < CULLED_LAYERS; layer++) {
+        uint32_t kept = 0;
+        for (uint32_t k = 0; k < count; k++) {
+            uint32_t i = layer ? x->list[k] : k;
+            if (!is_culled(c->world, s, h, i)) continue;
+            x->tnear[i] = nextafterf(h->t[i], INFINITY);
+            x->list[kept++] = i;
+        }
+        count = kept;
+        rays->lanes = x->list;
+        rays->count = count;
+        if (count) accel_closest(c->world, rays, h->t, h->u, h->v, h->triangle, h->instance, &b->camera_rays);
+    }
+}
+
+static void draw_coverage(const path_context *c, batch *b) {
+    const path_state *s = batch_state(b);
+    path_scratch *x = &b->scratch;
+    uint32_t depth = b->depth;
+    int independent = c->independent;
+    LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
+        sample_point p = {s->index[i], s->seed[i]};
+        x->u_coverage[i] = sample_pair(independent, p, SAMPLE_COVERAGE, depth).x;
+    }
+}
+
+void STAGE(trace)(const path_context *c, batch *b) {
+    const path_state *s = batch_state(b);
+    path_hit *h = batch_hit(b);
+    path_scratch *x = &b->scratch;
+    bool first = b->depth == 0;
+    if (c->world->flags & (MATERIAL_MASK | MATERIAL_BLEND)) draw_coverage(c, b);
+    ray_lanes rays = {s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, first ? x->tnear : NULL, first ? x->tfar : NULL,
+                      x->u_coverage, NULL, b->n};
+    accel_closest(c->world, &rays, h->t, h->u, h->v, h->triangle, h->instance, first ? &b->camera_rays : &b->bounce_rays);
+    if (first && c->world->single_sided) look_through(c, b, &rays);
+}

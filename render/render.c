@@ -1,0 +1,229 @@
+/* render/render.c: passes over a film until a stop rule holds. */
+#include "kiln/render.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/threads.h"
+#include "render/pass.h"
+#include "scene/transfer.h"
+
+struct kiln_renderer {
+    world *world;
+    const kiln_scene *scene;
+    uint32_t threads;
+};
+
+bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *options, kiln_renderer **renderer,
+                          kiln_report *report) {
+    static const kiln_renderer_options defaults;
+    if (!options) options = &defaults;
+    *renderer = NULL;
+    if (!scene->committed)
+        return report_error(report, KILN_CODE_USAGE, NULL, "call kiln_scene_commit first", "the scene is not committed");
+    kiln_decoding rec709;
+    transfer_rec709(&rec709);
+    bool given = options->decoding && options->decoding->present;
+    kiln_renderer *r = calloc(1, sizeof *r);
+    if (!r) return report_no_memory(report, "making the renderer");
+    r->scene = scene;
+    r->threads = options->threads ? options->threads : threads_available();
+    if (!world_create(scene, given ? options->decoding : &rec709, r->threads, options->embree_config, &r->world, report)) {
+        free(r);
+        return false;
+    }
+    *renderer = r;
+    return true;
+}
+
+void kiln_renderer_destroy(kiln_renderer *r) {
+    if (!r) return;
+    world_destroy(r->world);
+    free(r);
+}
+
+static const kiln_render_options no_options;
+
+/* The first bounces must not be cut: most of the light is in them. */
+enum { AUTO_ROULETTE_MIN = 3 };
+
+static void set_roulette(path_context *c, const kiln_roulette *r) {
+    c->roulette = r->kind == KILN_ROULETTE_AUTO ? KILN_ROULETTE_THROUGHPUT : r->kind;
+    c->roulette_min = r->kind == KILN_ROULETTE_AUTO ? AUTO_ROULETTE_MIN : r->min_depth;
+    c->roulette_p = (float)r->p;
+}
+
+static bool check_options(const kiln_render_options *o, kiln_report *report) {
+    if (o->roulette.kind == KILN_ROULETTE_FIXED && !(o->roulette.p > 0 && o->roulette.p <= 1))
+        return report_error(report, KILN_CODE_USAGE, NULL, "give a probability above 0, at most 1",
+                            "fixed roulette with the probability %g", o->roulette.p);
+    if (o->spp > FIXED_SAMPLES_MAX)
+        return report_error(report, KILN_CODE_USAGE, NULL, "give at most 16777216", "%u samples per pixel", o->spp);
+    if (o->noise < 0 || o->budget_seconds < 0 || o->filter_width < 0 || o->error_scale < 0)
+        return report_error(report, KILN_CODE_USAGE, NULL, "give 0 or more", "noise, budget or filter width is negative");
+    return true;
+}
+
+static bool make_context(const kiln_renderer *r, const kiln_render_options *o, const kiln_film *film, path_context *c,
+                         kiln_report *report) {
+    const kiln_film_desc *d = &film->desc;
+    const light_table *lights = &r->world->lights;
+    const kiln_camera *view = o->camera ? o->camera : kiln_scene_camera(r->scene, 1);
+    if (!check_options(o, report)) return false;
+    if (!view)
+        return report_error(report, KILN_CODE_USAGE, NULL, "give a camera", "the scene has no camera");
+    light_choice choice = o->estimator == KILN_ESTIMATOR_BSDF          ? CHOOSE_POINTS
+                          : o->light_sampling == KILN_LIGHTS_UNIFORM ? CHOOSE_UNIFORMLY
+                                                                       : CHOOSE_BY_POWER;
+    *c = (path_context){.world = r->world,
+                        .width = d->width,
+                        .height = d->height,
+                        .seed = hash_u64(o->seed),
+                        .independent = o->sampler == KILN_SAMPLER_INDEPENDENT,
+                        .estimator = o->estimator,
+                        .light_cdf = lights->cdf[choice],
+                        .light_guide = lights->guide[choice],
+                        .max_depth = o->max_depth == KILN_DEPTH_ZERO ? 0 : o->max_depth ? o->max_depth : 64,
+                        .background = o->background,
+                        .background_color = v3_load(o->background_color),
+                        .aovs = d->aovs & (1u << KILN_AOV_ALBEDO | 1u << KILN_AOV_NORMAL | 1u << KILN_AOV_DEPTH)};
+    set_roulette(c, &o->roulette);
+    pixel_filter_make(&c->filter, o->filter, o->filter_width);
+    return camera_make(r->world, view, d->width, d->height, &c->camera, report);
+}
+
+/* A render under way. */
+typedef struct run {
+    const kiln_render_options *options;
+    kiln_film *film;
+    pass pass;
+    uint32_t spp_limit;
+    double started, last_tick, error, scale;
+    uint64_t samples_before; /* that the film came with */
+    uint32_t spp_before;
+} run;
+
+static double seconds(const run *r) { return clock_seconds() - r->started; }
+
+/* Share of the work that is done, by the rule that will end it first; 0: no idea yet. */
+static double fraction(const run *r, uint64_t samples) {
+    const kiln_render_options *o = r->options;
+    double pixels = (double)r->film->width * r->film->height, spp = (double)(samples + r->samples_before) / pixels;
+    double by_spp = spp / r->spp_limit, by_time = o->budget_seconds > 0 ? seconds(r) / o->budget_seconds : 0;
+    double needed = o->noise > 0 && r->error > 0 ? fmax(spp * pow(r->error / o->noise, 2), spp) : 0;
+    double by_noise = needed > 0 ? spp / exp2(ceil(log2(needed))) : 0;
+    return fmin(fmax(fmax(by_spp, by_time), by_noise), 1);
+}
+
+static void report_progress(run *r) {
+    uint64_t samples = pass_samples(&r->pass);
+    double done = fraction(r, samples), elapsed = seconds(r);
+    kiln_progress p = {.spp_done = kiln_film_spp(r->film),
+                       .samples = samples,
+                       .fraction = done,
+                       .seconds = elapsed,
+                       .seconds_left = done > 0.001 ? elapsed * (1 - done) / done : -1,
+                       .error = r->error};
+    r->options->progress(&p, r->options->progress_user);
+}
+
+static void tick(void *user) {
+    run *r = user;
+    double now = clock_seconds();
+    if (!r->options->progress || now - r->last_tick < 0.1) return;
+    r->last_tick = now;
+    report_progress(r);
+}
+
+/* Powers of two, so that what --noise decides on does not depend on the machine; with a budget in smaller steps, so that
+ * little is left unfinished when the time is up. */
+static uint32_t next_target(const run *r, uint32_t spp) {
+    uint32_t next = 4;
+    while (next <= spp) next *= 2;
+    if (r->options->budget_seconds > 0 && spp > r->spp_before) {
+        double each = seconds(r) / (spp - r->spp_before), step = 0.1 * r->options->budget_seconds / each;
+        if (spp + step < next) next = spp + (step > 1 ? (uint32_t)step : 1);
+    }
+    return next < r->spp_limit ? next : r->spp_limit;
+}
+
+static bool is_power_of_two(uint32_t n) { return n && !(n & (n - 1)); }
+
+/* Fewer samples are not evidence enough to stop on. */
+enum { NOISE_SPP_MIN = 16 };
+
+static kiln_stop run_passes(run *r) {
+    const kiln_render_options *o = r->options;
+    for (;;) {
+        uint32_t spp = kiln_film_spp(r->film);
+        if (spp > 0) {
+            kiln_film_error e = kiln_film_estimate_error(r->film, r->scale);
+            r->error = e.known ? sqrt(e.relmse) : -1;
+        }
+        if (o->noise > 0 && is_power_of_two(spp) && spp >= NOISE_SPP_MIN && r->error >= 0 && r->error <= o->noise)
+            return KILN_STOP_NOISE;
+        if (spp >= r->spp_limit) return KILN_STOP_SPP;
+        r->pass.target = next_target(r, spp);
+        pass_run(&r->pass);
+        if (o->cancel && *o->cancel) return KILN_STOP_CANCELLED;
+        if (atomic_load(&r->pass.stopped)) return KILN_STOP_BUDGET;
+    }
+}
+
+static void collect(run *r, kiln_stop stop, kiln_render_stats *stats) {
+    *stats = (kiln_render_stats){.stop = stop, .spp = kiln_film_spp(r->film), .seconds = seconds(r), .lost_energy = -1};
+    fixed beyond = 0, kept = 0;
+    uint64_t first[KILN_DISCARD_COUNT];
+    memset(first, 0xff, sizeof first);
+    for (uint32_t t = 0; t < r->pass.threads; t++) {
+        const pass_worker *w = &r->pass.workers[t];
+        stats->camera_rays += w->batch->camera_rays.rays;
+        stats->bounce_rays += w->batch->bounce_rays.rays;
+        stats->shadow_rays += w->batch->shadow_rays.rays;
+        for (int k = 0; k < 3; k++) r->film->beyond[k] += w->beyond[k];
+        for (int d = 0; d < KILN_DISCARD_COUNT; d++) {
+            stats->discarded[d] += w->discarded[d];
+            if (w->discarded_first[d] < first[d]) first[d] = w->discarded_first[d];
+        }
+    }
+    for (int d = 0; d < KILN_DISCARD_COUNT; d++) {
+        if (!stats->discarded[d]) continue;
+        stats->discarded_pixel[d][0] = (uint32_t)(first[d] % r->film->desc.width);
+        stats->discarded_pixel[d][1] = (uint32_t)(first[d] / r->film->desc.width);
+    }
+    for (size_t i = 0; i < (size_t)r->film->width * r->film->height; i++)
+        for (int s = 0; s < KILN_REPLICATES; s++)
+            for (int k = 0; k < 3; k++) kept += r->film->pixels[i].sum[s][k];
+    for (int k = 0; k < 3; k++) beyond += r->film->beyond[k];
+    double lost = PROBE_EVERY * fixed_to_double(beyond), all = lost + fixed_to_double(kept);
+    if (all > 0) stats->lost_energy = lost / all;
+}
+
+bool kiln_render(const kiln_renderer *renderer, const kiln_render_options *options, kiln_film *film,
+                 kiln_render_stats *stats, kiln_report *report) {
+    const kiln_render_options *o = options ? options : &no_options;
+    path_context context;
+    run r = {.options = o, .film = film, .started = clock_seconds(), .error = -1, .scale = o->error_scale > 0 ? o->error_scale : 1};
+    if (!make_context(renderer, o, film, &context, report)) return false;
+    bool any_rule = o->spp || o->noise > 0 || o->budget_seconds > 0;
+    r.spp_limit = o->spp ? o->spp : any_rule ? FIXED_SAMPLES_MAX : 64;
+    r.spp_before = kiln_film_spp(film);
+    r.samples_before = kiln_film_samples(film);
+    r.pass = (pass){.context = &context, .film = film, .threads = renderer->threads, .cancel = o->cancel, .tick = tick,
+                    .tick_user = &r, .shuffle = o->tile_shuffle,
+                    .batch_size = o->batch_size && o->batch_size < BATCH_PATHS ? o->batch_size : BATCH_PATHS,
+                    .deadline = o->budget_seconds > 0 ? r.started + o->budget_seconds : 0};
+    r.pass.tracer = path_choose_tracer(o->isa, NULL);
+    if (!r.pass.tracer)
+        return report_error(report, KILN_CODE_USAGE, NULL, "leave it out", "this machine cannot run the instance '%s'", o->isa);
+    bool done = pass_make_workers(&r.pass) || report_no_memory(report, "starting the render");
+    if (done) {
+        kiln_stop stop = run_passes(&r);
+        kiln_render_stats own;
+        collect(&r, stop, stats ? stats : &own);
+        if (o->progress) report_progress(&r);
+    }
+    pass_free_workers(&r.pass);
+    return done;
+}
