@@ -26,6 +26,8 @@ static bool check_header(const unsigned char *bytes, size_t size, const kiln_whe
     if (version != 2)
         return report_error(report, KILN_CODE_FILE_FORMAT, file, "convert the file to glTF 2.0",
                             "this is a glb of version %u; kiln reads version 2", version);
+    if (length < HEADER_BYTES)
+        return report_error(report, KILN_CODE_FILE_FORMAT, file, again, "the glb says that it is %u bytes long", length);
     if (length > size)
         return report_error(report, KILN_CODE_FILE_TRUNCATED, file, again,
                             "the glb is truncated: its header says %u bytes, the file has %zu", length, size);

@@ -103,6 +103,12 @@ static void refuses_broken_headers(void **state) {
     set_length(&b, b.size + 4);
     refuse(&b, KILN_CODE_FILE_TRUNCATED, "a.glb", "truncated");
     b = whole();
+    set_length(&b, 5); /* less than its own header */
+    refuse(&b, KILN_CODE_FILE_FORMAT, "a.glb", "5 bytes long");
+    b = whole();
+    set_length(&b, 14);
+    refuse(&b, KILN_CODE_FILE_TRUNCATED, "chunk[0]", "inside a chunk header");
+    b = whole();
     b.data[12] = 200;
     refuse(&b, KILN_CODE_FILE_TRUNCATED, "chunk[0]", "200 bytes");
     b = whole();
