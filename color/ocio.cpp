@@ -5,6 +5,7 @@
 #include <string>
 
 #include "color/embedded.hpp"
+#include "color/nesting.hpp"
 
 namespace OCIO = OCIO_NAMESPACE;
 
@@ -69,7 +70,11 @@ ocio_processor *make_processor(const OCIO::ConstConfigRcPtr &config, const OCIO:
 
 ocio_config *ocio_config_read(const char *path, const kiln_where *where, kiln_report *report) {
     return guard(KILN_CODE_COLOR_CONFIG, "repair the file, or name another config with --ocio or $OCIO", where, report,
-                 [&] { return new ocio_config{OCIO::Config::CreateFromFile(path)}; });
+                 [&] {
+                     const OCIO::ConstConfigRcPtr config = OCIO::Config::CreateFromFile(path);
+                     check_nesting(config);
+                     return new ocio_config{config};
+                 });
 }
 
 ocio_config *ocio_config_embedded(kiln_report *report) {

@@ -1,5 +1,5 @@
-/* color/ocio.h: the seam over OpenColorIO, and the only place that includes its headers. Nothing that it throws
- * crosses: failures become messages in the report. Everything is immutable, so that any thread may use it. */
+/* color/ocio.h: the seam over OpenColorIO, whose headers only the C++ files of this folder include. Nothing that it
+ * throws crosses: failures become messages in the report. Everything is immutable, so that any thread may use it. */
 #ifndef KILN_COLOR_OCIO_H
 #define KILN_COLOR_OCIO_H
 

@@ -1,5 +1,7 @@
 #include "tests/color/support.h"
 
+#include <unistd.h>
+
 static void refuse(const char *config, const char *working, kiln_code code, const char *where, const char *what,
                    const char *remedy) {
     const kiln_color_options options = {config, working};
@@ -71,6 +73,35 @@ static void broken_configs(void **state) {
            "aces_interchange");
 }
 
+/* OpenColorIO 2.1 would follow these until the stack ends. */
+static void endless_definitions(void **state) {
+    (void)state;
+    static const char head[] = "ocio_profile_version: 2\n"
+                               "roles: {default: lin_rec709}\n"
+                               "file_rules:\n  - !<Rule> {name: Default, colorspace: default}\n"
+                               "displays:\n  S:\n    - !<View> {name: V, colorspace: c0, looks: grade}\n"
+                               "looks:\n  - !<Look> {name: grade, process_space: c0}\n"
+                               "colorspaces:\n  - !<ColorSpace> {name: lin_rec709}\n";
+    static const char row[] = "  - !<ColorSpace> {name: c%d, from_scene_reference: "
+                              "!<ColorSpaceTransform> {src: lin_rec709, dst: c%d}}\n";
+    char path[] = "endless-XXXXXX";
+    int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    /* A space defined by itself; two by each other; a chain that ends, but after 1,000. */
+    const int lengths[] = {1, 2, 1000};
+    for (size_t i = 0; i < 3; i++) {
+        FILE *file = fopen(path, "w");
+        assert_non_null(file);
+        fputs(head, file);
+        for (int k = 0; k < lengths[i]; k++)
+            fprintf(file, row, k, i < 2 ? (k + 1) % lengths[i] : k + 1);
+        fclose(file);
+        refuse(path, NULL, KILN_CODE_COLOR_CONFIG, path, "is defined by itself, or through too many others", "repair");
+    }
+    close(fd);
+    unlink(path);
+}
+
 static void unknown_working_spaces(void **state) {
     (void)state;
     refuse(NULL, "ACESg", KILN_CODE_COLOR, "embedded kiln config",
@@ -128,6 +159,7 @@ int main(void) {
         cmocka_unit_test(embedded_config_lists_its_names),
         cmocka_unit_test(environment_names_a_config),
         cmocka_unit_test(broken_configs),
+        cmocka_unit_test(endless_definitions),
         cmocka_unit_test(unknown_working_spaces),
         cmocka_unit_test(unknown_displays_views_and_looks),
     };
