@@ -95,7 +95,7 @@ static bool add_texture(builder *b, const slot_use *use, uint32_t *handle) {
         .wrap_v = from->wrap_v,
         .nearest = from->filter == KILN_FILTER_NEAREST,
         .channel = from->channel,
-        .curve = b->decoding->curve[from->transfer],
+        .curve = b->world->curves[from->transfer],
     };
     if (!find_uv_set(b, from->uv_set, &t.uv_set)) return false;
     memcpy(t.transform, from->transform, sizeof t.transform);
@@ -234,6 +234,7 @@ static bool build(builder *b, const bool *used, uint32_t threads) {
 bool world_build_materials(world *w, const kiln_scene *scene, const kiln_decoding *decoding, uint32_t threads,
                            kiln_report *report) {
     bool *used = mark_used(scene);
+    memcpy(w->curves, decoding->curve, sizeof w->curves);
     w->image_count = scene->image_count;
     w->images = array_alloc(scene->image_count, sizeof *w->images);
     builder b = {.world = w, .scene = scene, .decoding = decoding, .images = w->images, .report = report};

@@ -91,7 +91,8 @@ typedef struct world {
     uint32_t material_count;
     world_texture *textures;
     uint32_t texture_count;
-    struct world_image *images; /* what the textures read */
+    float curves[KILN_TRANSFER_COUNT][256]; /* of 8-bit textures */
+    struct world_image *images;             /* what the textures read */
     uint32_t image_count;
     uint32_t uv_sets[WORLD_UV_SETS]; /* the scene's numbers of the UV sets in use */
     uint32_t uv_set_count;
