@@ -16,14 +16,14 @@ struct kiln_arena_block {
 static kiln_arena_block *add_block(kiln_arena *arena, size_t bytes) {
     kiln_arena_block *block = malloc(sizeof *block);
     size_t usual = arena->bytes < BLOCK_MIN ? BLOCK_MIN : arena->bytes > BLOCK_MAX ? BLOCK_MAX : arena->bytes;
-    size_t size = bytes > usual ? bytes : usual;
+    /* A block made for one large array goes behind the current one, whose rest stays in use. */
+    bool behind = bytes > usual / 2 && arena->blocks;
+    size_t size = behind || bytes > usual ? bytes : usual;
     char *data = block ? aligned_array(size, 1) : NULL;
     if (!data) {
         free(block);
         return NULL;
     }
-    /* A block made for one large array goes behind the current one, whose rest stays in use. */
-    bool behind = bytes > usual / 2 && arena->blocks;
     *block = (kiln_arena_block){behind ? arena->blocks->next : arena->blocks, 0, size, data};
     if (behind) arena->blocks->next = block;
     else arena->blocks = block;

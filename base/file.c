@@ -1,6 +1,5 @@
 #include "base/file.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
@@ -17,7 +16,8 @@ static bool read_error(const char *path, const kiln_where *where, kiln_report *r
         return report_error(report, KILN_CODE_FILE_MISSING, &here, "check the path", "%s does not exist",
                             where ? path : "the file");
     return report_error(report, KILN_CODE_FILE_UNREADABLE, &here, "check the path and its permissions",
-                        "%s cannot be read: %s", where ? path : "the file", strerror(error));
+                        "%s cannot be read: %s", where ? path : "the file",
+                        error == ENODEV ? "Not a regular file" : strerror(error));
 }
 
 static bool too_large(const char *path, uint64_t limit, const kiln_where *where, kiln_report *report) {
@@ -68,7 +68,7 @@ bool file_read(const char *path, uint64_t limit, kiln_bytes *bytes, const kiln_w
     struct stat status;
     int error = fstat(fd, &status) ? errno : 0;
     if (!error && !from_stdin && S_ISDIR(status.st_mode)) error = EISDIR;
-    if (!error && !from_stdin && !S_ISREG(status.st_mode)) error = EINVAL;
+    if (!error && !from_stdin && !S_ISREG(status.st_mode)) error = ENODEV;
     size_t expected = !error && S_ISREG(status.st_mode) ? (size_t)status.st_size : 65536;
     if (!error && expected > limit) error = EFBIG;
     if (!error) error = read_all(fd, limit, expected, bytes);
@@ -83,7 +83,9 @@ void file_free(kiln_bytes *bytes) {
 }
 
 struct kiln_writer {
-    char *path, *temporary;
+    char *path;      /* as given, for messages */
+    char *target;    /* where links lead; renamed onto */
+    char *temporary; /* NULL: written as it is */
     int fd, error;
     bool to_stdout;
 };
@@ -97,43 +99,66 @@ static bool write_error(const char *path, int error, kiln_report *report) {
 static void free_writer(kiln_writer *writer) {
     if (writer->fd >= 0 && !writer->to_stdout) close(writer->fd);
     free(writer->path);
+    free(writer->target);
     free(writer->temporary);
     free(writer);
 }
 
+/* A new file beside the target. mkstemp would make it private, and the umask cannot be asked for without being changed
+ * under other threads' feet. */
+static int open_temporary(kiln_writer *writer) {
+    for (unsigned attempt = 0; attempt < 1000; attempt++) {
+        kiln_text name = {0};
+        text_format(&name, "%s.%lx-%u", writer->target, (unsigned long)getpid(), attempt);
+        free(writer->temporary);
+        writer->temporary = text_take(&name);
+        if (!writer->temporary) return ENOMEM;
+        writer->fd = open(writer->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (writer->fd >= 0) return 0;
+        if (errno != EEXIST) return errno;
+    }
+    return EEXIST;
+}
+
+static int open_writer(kiln_writer *writer) {
+    struct stat status;
+    writer->to_stdout = strcmp(writer->path, "-") == 0;
+    if (writer->to_stdout) {
+        writer->fd = STDOUT_FILENO;
+        return 0;
+    }
+    if (!writer->path[0]) return ENOENT; /* else only the rename would fail */
+    bool exists = stat(writer->path, &status) == 0;
+    if (exists && S_ISDIR(status.st_mode)) return EISDIR;
+    if (exists && !S_ISREG(status.st_mode)) { /* renaming onto a device would replace it for everyone */
+        /* O_NONBLOCK: opening a FIFO that nobody reads must not hang. */
+        writer->fd = open(writer->path, O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+        return writer->fd < 0 || fcntl(writer->fd, F_SETFL, 0) < 0 ? errno : 0;
+    }
+    writer->target = exists ? realpath(writer->path, NULL) : strdup(writer->path);
+    return writer->target ? open_temporary(writer) : errno;
+}
+
 kiln_writer *file_create(const char *path, kiln_report *report) {
     kiln_writer *writer = calloc(1, sizeof *writer);
-    kiln_text temporary = {0};
-    text_format(&temporary, "%s.XXXXXX", path);
-    char *name = text_take(&temporary), *copy = strdup(path);
-    if (!writer || !name || !copy) {
+    char *copy = strdup(path);
+    if (!writer || !copy) {
         free(writer);
-        free(name);
         free(copy);
         report_no_memory(report, "opening an output file");
         return NULL;
     }
-    *writer = (kiln_writer){copy, name, -1, 0, strcmp(path, "-") == 0};
-    struct stat status;
-    int error = 0;
-    if (writer->to_stdout) writer->fd = STDOUT_FILENO;
-    else if (stat(path, &status) == 0 && S_ISDIR(status.st_mode)) error = EISDIR;
-    else if ((writer->fd = mkstemp(name)) < 0) error = errno;
-    if (error) {
-        write_error(path, error, report);
-        free_writer(writer);
-        return NULL;
-    }
-    /* mkstemp makes files private; an output is as readable as any other new file. */
-    if (!writer->to_stdout) {
-        mode_t mask = umask(0);
-        umask(mask);
-        (void)fchmod(writer->fd, 0666 & ~mask);
-    }
-    return writer;
+    *writer = (kiln_writer){.path = copy, .fd = -1};
+    int error = open_writer(writer);
+    if (!error) return writer;
+    write_error(path, error, report);
+    free_writer(writer);
+    return NULL;
 }
 
-const char *file_temporary_name(const kiln_writer *writer) { return writer->temporary; }
+const char *file_temporary_name(const kiln_writer *writer) {
+    return writer->to_stdout ? NULL : writer->temporary ? writer->temporary : writer->path;
+}
 
 bool file_write(kiln_writer *writer, const void *data, size_t size) {
     const char *at = data;
@@ -178,11 +203,11 @@ static void flush_folder(const char *path) {
 
 bool file_commit(kiln_writer *writer, kiln_report *report) {
     int error = writer->error;
-    if (!writer->to_stdout) {
+    if (writer->temporary) {
         if (!error && fsync(writer->fd)) error = errno;
-        if (!error && rename(writer->temporary, writer->path)) error = errno;
+        if (!error && rename(writer->temporary, writer->target)) error = errno;
         if (error) (void)unlink(writer->temporary);
-        else flush_folder(writer->path);
+        else flush_folder(writer->target);
     }
     bool done = error ? write_error(writer->path, error, report) : true;
     free_writer(writer);
@@ -191,7 +216,7 @@ bool file_commit(kiln_writer *writer, kiln_report *report) {
 
 void file_discard(kiln_writer *writer) {
     if (!writer) return;
-    if (!writer->to_stdout) (void)unlink(writer->temporary);
+    if (writer->temporary) (void)unlink(writer->temporary);
     free_writer(writer);
 }
 
@@ -211,6 +236,7 @@ void path_suffix(const char *path, char suffix[16]) {
     const char *dot = strrchr(path_base(path), '.');
     size_t length = 0;
     if (dot && strlen(dot) < 16)
-        for (; dot[length]; length++) suffix[length] = (char)tolower((unsigned char)dot[length]);
+        for (; dot[length]; length++) /* not tolower, whose answer depends on the locale */
+            suffix[length] = dot[length] >= 'A' && dot[length] <= 'Z' ? (char)(dot[length] - 'A' + 'a') : dot[length];
     suffix[length] = '\0';
 }

@@ -16,13 +16,14 @@ bool file_read(const char *path, uint64_t limit, kiln_bytes *bytes, const kiln_w
 void file_free(kiln_bytes *bytes);
 
 /* A file that appears under its name whole or not at all: written to a temporary beside it, flushed to the disk,
- * renamed. "-" is standard output. */
+ * renamed. A link stays a link, to the new file. "-" is standard output; that, devices and pipes are written as they
+ * are. */
 typedef struct kiln_writer kiln_writer;
 kiln_writer *file_create(const char *path, kiln_report *report); /* NULL: reported */
-/* Where to write before file_commit: a name to hand to a library that opens files itself. */
+/* Where to write before file_commit: a name to hand to a library that opens files itself. NULL for standard output. */
 const char *file_temporary_name(const kiln_writer *);
 bool file_write(kiln_writer *, const void *data, size_t size);
-/* At a place counted from the start, without moving where file_write goes on. Not for standard output. */
+/* At a place counted from the start, without moving where file_write goes on. A pipe fails. */
 bool file_write_at(kiln_writer *, const void *data, size_t size, uint64_t offset);
 /* Renames into place; false: reported, and nothing is left behind. Frees the writer either way. */
 bool file_commit(kiln_writer *, kiln_report *report);

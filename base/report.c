@@ -8,7 +8,8 @@
 
 #include "base/text.h"
 
-/* More distinct messages than this say nothing new; the rest are only counted. */
+/* More distinct messages than this say nothing new; the rest are only counted. Errors have as many places again, so
+ * that warnings cannot crowd them out. */
 enum { MESSAGES_MAX = 1000 };
 
 typedef struct entry {
@@ -21,7 +22,6 @@ struct kiln_report {
     size_t count, capacity;
     uint64_t totals[KILN_ERROR + 1];
     int first_error_exit; /* 0: no error yet */
-    bool memory_lost;     /* a message could not be stored */
 };
 
 static const struct {
@@ -53,7 +53,6 @@ void kiln_report_clear(kiln_report *report) {
     free_entries(report);
     memset(report->totals, 0, sizeof report->totals);
     report->first_error_exit = 0;
-    report->memory_lost = false;
 }
 
 void kiln_report_destroy(kiln_report *report) {
@@ -104,7 +103,7 @@ static void store(kiln_report *report, kiln_severity severity, kiln_code code, c
         known->message.count++;
         return;
     }
-    if (report->count >= MESSAGES_MAX && severity != KILN_ERROR) return;
+    if (report->count >= (severity == KILN_ERROR ? 2 * MESSAGES_MAX : MESSAGES_MAX)) return;
     kiln_text place = {0};
     append_where(&place, where);
     kiln_message m = {severity, code, text_take(&place), strdup(what), strdup(remedy ? remedy : ""), 1};
@@ -112,7 +111,6 @@ static void store(kiln_report *report, kiln_severity severity, kiln_code code, c
         free((char *)m.where);
         free((char *)m.what);
         free((char *)m.remedy);
-        report->memory_lost = true;
         return;
     }
     report->entries[report->count++].message = m;

@@ -75,7 +75,7 @@ void text_free(kiln_text *text) {
 }
 
 bool text_to_double(const char *string, double *value) {
-    if (*string == '\0' || *string == ' ' || *string == '\t') return false;
+    if (*string == '\0' || strchr(" \t\n\v\f\r", *string)) return false;
     char *end;
     double parsed = strtod_l(string, &end, get_c_locale());
     if (*end != '\0' || !isfinite(parsed)) return false;
@@ -116,7 +116,7 @@ static size_t edit_distance(const char *a, const char *b) {
 
 const char *text_nearest(const char *word, const char *const *candidates, size_t count) {
     const char *best = NULL;
-    size_t best_distance = strlen(word) / 3 + 1;
+    size_t length = strlen(word), best_distance = (length == 2 ? 1 : length / 3) + 1;
     for (size_t i = 0; i < count; i++) {
         size_t distance = edit_distance(word, candidates[i]);
         if (distance < best_distance) {

@@ -17,7 +17,7 @@ typedef struct kiln_text {
 
 void text_append(kiln_text *, const char *string);
 void text_append_bytes(kiln_text *, const char *bytes, size_t count);
-/* printf in the C locale: a decimal point is a point. */
+/* printf in the C locale: a decimal point is a point. No argument may point into the text itself. */
 void text_format(kiln_text *, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_format_list(kiln_text *, const char *format, va_list args);
 /* Hands the characters over (free()); "" rather than NULL for empty text; NULL when memory ran out. */
@@ -28,8 +28,8 @@ void text_free(kiln_text *);
 bool text_to_double(const char *string, double *value);
 bool text_to_uint64(const char *string, uint64_t *value);
 
-/* 0 or 1 edits are close: the candidate nearest to word in edit distance, NULL when none is within a third of its
- * length. For "did you mean". */
+/* The candidate nearest to word in edit distance, for "did you mean". NULL when none is within a third of the word's
+ * length (of two letters, one may be wrong). */
 const char *text_nearest(const char *word, const char *const *candidates, size_t count);
 
 #endif
