@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "image/codec.h"
 #include "image/half.h"
 
@@ -75,6 +76,21 @@ static bool pick_channels(reader *r, const exr_attr_chlist_t *channels) {
     return true;
 }
 
+/* Names what the first part has instead: "Z, beauty.B, beauty.G, …". */
+static bool no_picture(reader *r) {
+    const exr_attr_chlist_t *channels = NULL;
+    kiln_text names = {0};
+    (void)exr_get_channels(r->context, 0, &channels);
+    for (int i = 0; channels && i < channels->num_channels && i < 8; i++)
+        text_format(&names, "%s%s", i ? ", " : "", channels->entries[i].name.str);
+    if (channels && channels->num_channels > 8) text_append(&names, ", …");
+    image_refuse(r->source, KILN_CODE_IMAGE, "rename or copy the channels to R, G, B and A, or Y",
+                 "no flat part of the OpenEXR file has channels R, G and B, or Y (it has %s)",
+                 names.data ? names.data : "none");
+    text_free(&names);
+    return false;
+}
+
 static bool find_part(reader *r) {
     int parts = 0;
     exr_result_t code = exr_get_count(r->context, &parts);
@@ -86,9 +102,7 @@ static bool find_part(reader *r) {
         if (storage != EXR_STORAGE_SCANLINE && storage != EXR_STORAGE_TILED) continue;
         if (pick_channels(r, r->channels)) return true;
     }
-    if (code) return damaged(r, code);
-    return image_refuse(r->source, KILN_CODE_IMAGE, "rename or copy the channels to R, G, B and A, or Y",
-                        "no flat part of the OpenEXR file has channels R, G and B, or Y");
+    return code ? damaged(r, code) : no_picture(r);
 }
 
 static bool check_channels(reader *r) {

@@ -116,7 +116,9 @@ static bool read_kind(const image_source *source, kiln_image_info *info, kiln_im
 
 static image_source open_source(const void *bytes, size_t size, uint64_t limit, const kiln_where *where,
                                 kiln_report *report) {
-    return (image_source){bytes, size, limit ? limit : DEFAULT_LIMIT, where, report};
+    if (!limit) limit = DEFAULT_LIMIT;
+    if (limit > INT64_MAX) limit = INT64_MAX; /* the libraries' limits are signed */
+    return (image_source){bytes, size, limit, where, report};
 }
 
 bool image_probe(const void *bytes, size_t size, kiln_image_info *info, const kiln_where *where, kiln_report *report) {
