@@ -15,6 +15,7 @@ typedef struct smoothness {
     double normal_rad;    /* between authored and limit normals; 99 % of the corners stay under it */
     double deviation;     /* of the limit from the promised surface; 99 % of the places stay under it */
     double deviation_max; /* at the worst place */
+    double slide;         /* along the surface, at most: textures are stretched by it, the shape is not */
     double bulge;         /* of the limit from the polygons, at most: what refining changes at all */
 } smoothness;
 

@@ -188,8 +188,8 @@ class Builder {
     }
 
     bool has_mask(const Sector &s) const {
-        if (level.IsVertexNonManifold(vertex) || s.faces.size() < 2) return false;
-        if (s.closed) return level.GetVertexSharpness(vertex) < 1;
+        if (level.IsVertexNonManifold(vertex)) return false;
+        if (s.closed) return s.faces.size() > 1 && level.GetVertexSharpness(vertex) < 1;
         return level.GetVertexRule(vertex) == Sdc::Crease::RULE_CREASE && !level.IsVertexInfSharp(vertex);
     }
 

@@ -18,9 +18,9 @@ static void measure(const char *file, const kiln_scene *scene, const kiln_mesh *
     else if (osd_fit(&cage, &arena, scene->where, report) &&
              osd_refine(&cage, 1, &arena, &once, scene->where, report) && smoothness_measure(m, &cage, &once, &s)) {
         bool smooth = smoothness_decide(&s, reason);
-        printf("quads %.1f %%, split %.1f %%, normals %.1f deg, deviation %.3f %% (worst %.3f %%), bulge %.3f %%: %s, %s\n",
+        printf("quads %.1f %%, split %.1f %%, normals %.1f deg, deviation %.3f %% (worst %.3f %%), slide %.3f %%, bulge %.3f %%: %s, %s\n",
                100 * cage.quad_rate, 100 * s.split, s.normal_rad * 57.29577951, 100 * s.deviation, 100 * s.deviation_max,
-               100 * s.bulge, smooth ? "refine" : "leave", reason);
+               100 * s.slide, 100 * s.bulge, smooth ? "refine" : "leave", reason);
     }
     arena_free(&arena);
 }
