@@ -31,6 +31,11 @@ static const char *skip_string(const char *at) {
     return at + 1;
 }
 
+/* Of numbers and words. */
+static bool is_literal(char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || c == '-' || c == '+' || c == '.' || c == 'E';
+}
+
 const char *json_skip(const char *at) {
     size_t depth = 0;
     do {
@@ -49,7 +54,7 @@ const char *json_skip(const char *at) {
         case ',':
         case ':': at++; break;
         default:
-            while (*at && !strchr(" \n\r\t,:]}", *at)) at++; /* numbers and words */
+            while (is_literal(*at)) at++;
         }
         if (depth) at = json_space(at);
     } while (depth);

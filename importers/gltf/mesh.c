@@ -32,9 +32,11 @@ static bool same_attributes(const mesh_part *a, const mesh_part *b) {
     return true;
 }
 
-/* Primitives of one vertex buffer, one for each material, are the rule in some tools. */
+/* Primitives of one vertex buffer, one for each material, are the rule in some tools. They stand side by side: looking
+ * at a few before is enough, and keeps a mesh of 100,000 primitives linear. */
 static void place_vertices(mesh_parts *m, mesh_part *part) {
-    for (size_t i = 0; i < m->count; i++)
+    enum { NEIGHBOURS = 64 };
+    for (size_t i = m->count; i-- > 0 && m->count - i <= NEIGHBOURS;)
         if (same_attributes(&m->parts[i], part)) {
             part->shared = true;
             part->first_vertex = m->parts[i].first_vertex;
@@ -74,16 +76,13 @@ static bool open_parts(mesh_parts *m) {
     return true;
 }
 
-/* What the mesh's own extras say, or else those of the first node that shows it. */
-static bool read_subdivision(mesh_parts *m, size_t index, uint32_t **tags, size_t *tag_count) {
-    const gltf_reader *r = m->r;
+/* What the mesh's own extras say, or else those of the node that asks for it. */
+static bool read_subdivision(mesh_parts *m, int asking_node, uint32_t **tags, size_t *tag_count) {
     const gltf_value *extras = &m->mesh->extras;
     kiln_where owner = m->where;
-    for (size_t i = 0; i < r->placement_count && !value_member(extras, "subdivision"); i++) {
-        const gltf_node *node = &r->document.nodes[r->placements[i].node];
-        if ((size_t)node->mesh != index) continue;
-        extras = &node->extras;
-        owner = where_item(&r->file, "nodes", r->placements[i].node);
+    if (!value_member(extras, "subdivision") && asking_node >= 0) {
+        extras = &m->r->document.nodes[asking_node].extras;
+        owner = where_item(&m->r->file, "nodes", (size_t)asking_node);
     }
     if (!parts_read_subdivision(m, extras, tags, tag_count, &owner)) return false;
     m->subdivision.triangulated = true;
@@ -112,23 +111,30 @@ static bool add_to_scene(mesh_parts *m, kiln_id *id) {
     return added;
 }
 
-static bool add_mesh(gltf_reader *r, size_t index) {
+static bool add_mesh(gltf_reader *r, size_t index, int asking_node) {
     mesh_parts m = {.r = r, .mesh = &r->document.meshes[index], .where = where_item(&r->file, "meshes", index)};
     uint32_t *tags;
     size_t tag_count;
-    bool done = open_parts(&m) &&
-                (m.count == 0 || (parts_read_faces(&m) && parts_read_primvars(&m) &&
-                                  read_subdivision(&m, index, &tags, &tag_count) && parts_compact(&m, tags, tag_count) &&
-                                  add_to_scene(&m, &r->meshes[index])));
+    bool done = open_parts(&m) && (m.count == 0 || (parts_read_faces(&m) && parts_read_primvars(&m) &&
+                                                    read_subdivision(&m, asking_node, &tags, &tag_count) &&
+                                                    parts_compact(&m, tags, tag_count) && add_to_scene(&m, &r->meshes[index])));
     arena_free(&m.arena);
     return done;
 }
 
 bool add_meshes(gltf_reader *r) {
-    bool *placed = reader_array(r, r->document.mesh_count, sizeof *placed, &r->file);
-    if (!placed) return false;
-    for (size_t i = 0; i < r->placement_count; i++) placed[r->document.nodes[r->placements[i].node].mesh] = true;
-    for (size_t i = 0; i < r->document.mesh_count; i++)
-        if (placed[i] && !add_mesh(r, i)) return false;
+    size_t count = r->document.mesh_count;
+    bool *placed = reader_array(r, count, sizeof *placed, &r->file);
+    int *asking = placed ? reader_array(r, count, sizeof *asking, &r->file) : NULL; /* the first node that wants subdivision */
+    if (!asking) return false;
+    for (size_t i = 0; i < count; i++) asking[i] = -1;
+    for (size_t i = 0; i < r->placement_count; i++) {
+        const gltf_node *node = &r->document.nodes[r->placements[i].node];
+        placed[node->mesh] = true;
+        if (asking[node->mesh] < 0 && value_member(&node->extras, "subdivision"))
+            asking[node->mesh] = (int)r->placements[i].node;
+    }
+    for (size_t i = 0; i < count; i++)
+        if (placed[i] && !add_mesh(r, i, asking[i])) return false;
     return true;
 }
