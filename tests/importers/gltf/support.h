@@ -133,6 +133,10 @@ static const float triangle_positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
 #define TRIANGLE TRIANGLE_VIEWS TRIANGLE_ACCESSORS TRIANGLE_MESH
 #define TRIANGLE_DATA triangle_positions, sizeof triangle_positions
 
+/* A PNG of one grey pixel. */
+#define PIXEL \
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mNoAAAAggCB2kUIOwAAAABJRU5ErkJggg=="
+
 static inline void assert_floats(const float *values, const float *expected, size_t count) {
     for (size_t i = 0; i < count; i++)
         if (!(fabsf(values[i] - expected[i]) <= 1e-6f * (1 + fabsf(expected[i])))) {

@@ -1,5 +1,7 @@
 #include "tests/importers/gltf/support.h"
 
+#include <unistd.h>
+
 #include "importers/gltf/extensions.h"
 
 static void table_names_each_once(void **state) {
@@ -50,11 +52,17 @@ static void repeated_arrays_are_refused(void **state) {
     import_bad(NULL, 0, "'extensionsRequired': [], 'extensionsRequired': []", KILN_CODE_SYNTAX, "extensionsRequired", "twice");
 }
 
-/* A key with an escape reaches the parser behind as "buffers": nothing may be opened for it. */
+/* A key with an escape reaches the parser behind as "buffers": nothing may be opened for it, not even what fits. */
 static void escaped_keys_open_nothing(void **state) {
     (void)state;
-    import_bad_text("{\"asset\": {\"version\": \"2.0\"}, \"b\\u0075ffers\": [{\"byteLength\": 10, \"uri\": \"/etc/passwd\"}]}",
-                    KILN_CODE_SYNTAX, "test.gltf", "");
+    char path[] = "/tmp/kiln-escaped-XXXXXX", json[200];
+    int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    assert_int_equal(write(fd, "0123456789", 10), 10);
+    close(fd);
+    snprintf(json, sizeof json, "{\"asset\": {\"version\": \"2.0\"}, \"b\\u0075ffers\": [{\"byteLength\": 10, \"uri\": \"%s\"}]}", path);
+    import_bad_text(json, KILN_CODE_SYNTAX, "test.gltf", "not found");
+    unlink(path);
 }
 
 static void motion_is_one_warning_each(void **state) {

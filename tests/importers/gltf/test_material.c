@@ -2,8 +2,6 @@
 
 #include <math.h>
 
-/* 1 × 1 PNG, grey, 8 bits. */
-#define PIXEL "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR42mNoAAAAggCB2kUIOwAAAABJRU5ErkJggg=="
 #define TEXTURES "'images': [{'uri': '" PIXEL "'}], 'textures': [{'source': 0}, {'source': 0, 'sampler': 0}], " \
                  "'samplers': [{'wrapS': 33071, 'wrapT': 33648, 'magFilter': 9728}], "
 
@@ -213,6 +211,8 @@ static void checks_textures(void **state) {
             "texture 12 does not exist (the file has 2)");
     refused("'occlusionTexture': {'index': 12}", KILN_CODE_REFERENCE, "materials[0].occlusionTexture.index", "texture 12");
     import_bad(NULL, 0, "'images': [], 'textures': [{'source': 0}]", KILN_CODE_REFERENCE, "textures[0].source", "image 0");
+    import_bad(TRIANGLE_DATA, TRIANGLE_VIEWS "'images': [{'uri': 'a.png', 'bufferView': 0}]", KILN_CODE_SYNTAX, "images[0]",
+               "both uri and bufferView");
     import_bad(NULL, 0, "'textures': [{'sampler': 1}]", KILN_CODE_REFERENCE, "textures[0].sampler", "sampler 1");
     import_bad(NULL, 0, "'images': [{'uri': '" PIXEL "'}], 'textures': [{'source': 0, 'sampler': 0}], 'samplers': [{'wrapS': 1}], "
                "'materials': [{'emissiveTexture': {'index': 0}}]", KILN_CODE_RANGE, "samplers[0].wrapS", "1 is no wrap mode");

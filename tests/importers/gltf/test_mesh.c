@@ -224,6 +224,32 @@ static void completes_normals_and_tangents(void **state) {
     kiln_scene_destroy(scene);
 }
 
+/* A part with a normal map and without tangents: they are computed for all parts, or some would fit no other. */
+static void keeps_tangents_where_all_have_them(void **state) {
+    (void)state;
+    data d = fill(six, 6);
+    static const char mapped[] = ", 'materials': [{'normalTexture': {'index': 0}}, {}], 'textures': [{'source': 0}], "
+                                 "'images': [{'uri': '" PIXEL "'}]";
+    static const struct { const char *second; kiln_interpolation kept; } rows[] = {
+        {"{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'indices': 5, 'material': 0}", KILN_FACE_VARYING},
+        {"{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'indices': 5, 'material': 1}", KILN_VERTEX},
+        {"{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2, 'TANGENT': 3}, 'indices': 5, 'material': 0}", KILN_VERTEX}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char primitives[400];
+        snprintf(primitives, sizeof primitives, "{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2, 'TANGENT': 3}, "
+                 "'indices': 4, 'material': 0}, %s", rows[i].second);
+        char *rest = rest_of(3, 3, primitives, mapped), *json = document(&d, sizeof d, rest);
+        kiln_report *report = kiln_report_create();
+        kiln_scene *scene = import_text(json, report);
+        assert_non_null(scene);
+        assert_int_equal(mesh_primvar(scene_mesh(scene, 1), KILN_PRIMVAR_TANGENT, 0)->interpolation, rows[i].kept);
+        kiln_scene_destroy(scene);
+        kiln_report_destroy(report);
+        free(json);
+        free(rest);
+    }
+}
+
 static void reads_integer_colors_as_normalized(void **state) {
     (void)state;
     data d = fill(six, 6);
@@ -243,7 +269,7 @@ static void reads_subdivision(void **state) {
     const uint16_t indices[6] = {0, 1, 2, 5, 6, 7};
     data d = fill(indices, 6);
     char *rest = rest_of(6, 0, "{'attributes': {'POSITION': 0}, 'indices': 4}], 'extras': {'subdivision': {'scheme': 'loop', "
-                               "'level': 3, 'creases': [[0, 1, 10], [6, 7, 2.5], [3, 4, 1]], 'corners': [[5, 4]]}}, 'x': [0", "");
+                               "'level': 3, 'creases': [[6, 7, 2.5], [0, 1, 10], [3, 4, 1]], 'corners': [[5, 4]]}}, 'x': [0", "");
     char *json = document(&d, sizeof d, rest);
     kiln_report *report = kiln_report_create();
     kiln_scene *scene = import_text(json, report);
@@ -254,8 +280,8 @@ static void reads_subdivision(void **state) {
     assert_true(s->triangulated);
     assert_false(s->fan_encoded);
     /* Vertices 3 and 4 of the file are in no face, 5 to 7 have become 3 to 5. */
-    const uint32_t creases[4] = {0, 1, 4, 5};
-    const float sharpness[2] = {10, 2.5f};
+    const uint32_t creases[4] = {4, 5, 0, 1};
+    const float sharpness[2] = {2.5f, 10};
     assert_int_equal(s->crease_count, 2);
     assert_memory_equal(s->crease_vertices, creases, sizeof creases);
     assert_floats(s->crease_sharpness, sharpness, 2);
@@ -319,6 +345,7 @@ int main(void) {
         cmocka_unit_test(unites_attributes),
         cmocka_unit_test(drops_unused_vertices),
         cmocka_unit_test(completes_normals_and_tangents),
+        cmocka_unit_test(keeps_tangents_where_all_have_them),
         cmocka_unit_test(reads_integer_colors_as_normalized),
         cmocka_unit_test(reads_subdivision),
         cmocka_unit_test(understands_short_forms),

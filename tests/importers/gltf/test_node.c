@@ -212,16 +212,16 @@ static void hides_nodes(void **state) {
     assert_int_equal(scene->camera_count, 1);
 }
 
-#define INSTANCED(attributes) "{'mesh': 0, 'translation': [100, 0, 0], 'extensions': {'EXT_mesh_gpu_instancing': {'attributes': {" attributes "}}}}"
+#define INSTANCED(attributes) "{'mesh': 0, 'translation': [100, 0, 0], 'scale': [2, 2, 2], 'extensions': {'EXT_mesh_gpu_instancing': {'attributes': {" attributes "}}}}"
 
 static void places_instances(void **state) {
     (void)state;
     import_nodes("'nodes': [" INSTANCED("'TRANSLATION': 0") "]"); /* the triangle's positions serve as offsets */
     assert_int_equal(scene->mesh_count, 1);
     assert_int_equal(scene->instance_count, 3);
-    assert_point(scene_instance(scene, 1)->transforms[0].m, (dvec3){1, 2, 3}, (dvec3){101, 2, 3});
-    assert_point(scene_instance(scene, 2)->transforms[0].m, (dvec3){1, 2, 3}, (dvec3){102, 2, 3});
-    assert_point(scene_instance(scene, 3)->transforms[0].m, (dvec3){1, 2, 3}, (dvec3){101, 3, 3});
+    assert_point(scene_instance(scene, 1)->transforms[0].m, (dvec3){1, 2, 3}, (dvec3){102, 4, 6});
+    assert_point(scene_instance(scene, 2)->transforms[0].m, (dvec3){1, 2, 3}, (dvec3){104, 4, 6});
+    assert_point(scene_instance(scene, 3)->transforms[0].m, (dvec3){1, 2, 3}, (dvec3){102, 6, 6});
 }
 
 static void checks_instances(void **state) {

@@ -41,6 +41,8 @@ static int set_up(void **state) {
     if (symlink(target, path)) return -1;
     in_root(path, "asset/up");
     if (symlink("..", path)) return -1;
+    in_root(path, "asset/side.bin");
+    if (symlink("../asset2/x.bin", path)) return -1;
     in_root(path, "asset/inner.bin");
     return symlink("a.bin", path);
 }
@@ -48,7 +50,7 @@ static int set_up(void **state) {
 static int tear_down(void **state) {
     (void)state;
     static const char *const names[] = {"secret.bin", "asset/a.bin", "asset/100%.bin", "asset/sub/b c.bin",
-                                        "asset/\xE2\x9D\xA4.bin", "asset2/x.bin", "asset/link.bin", "asset/up",
+                                        "asset/\xE2\x9D\xA4.bin", "asset2/x.bin", "asset/side.bin", "asset/link.bin", "asset/up",
                                         "asset/inner.bin"};
     char path[160];
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
@@ -114,7 +116,7 @@ static void stays_inside(void **state) {
     refused("sub/../../secret.bin", KILN_CODE_PATH_OUTSIDE, "leaves the asset's folder");
     refused("nowhere/../../secret.bin", KILN_CODE_PATH_OUTSIDE, "leaves the asset's folder");
     refused("..", KILN_CODE_PATH_OUTSIDE, "leaves the asset's folder");
-    refused("../asset2/x.bin", KILN_CODE_PATH_OUTSIDE, "leaves the asset's folder"); /* a folder whose name begins alike */
+    refused("../asset2/x.bin", KILN_CODE_PATH_OUTSIDE, "leaves the asset's folder");
     refused(absolute, KILN_CODE_PATH_OUTSIDE, "absolute path");
     refused("%2Fetc/passwd", KILN_CODE_PATH_OUTSIDE, "absolute path");
     refused("\\\\server\\share", KILN_CODE_PATH_OUTSIDE, "absolute path");
@@ -123,6 +125,7 @@ static void stays_inside(void **state) {
     refused("C:\\a.bin", KILN_CODE_PATH_OUTSIDE, "scheme");
     refused("file%3A///etc/passwd", KILN_CODE_PATH_OUTSIDE, "scheme");
     refused("link.bin", KILN_CODE_PATH_OUTSIDE, "symbolic link");
+    refused("side.bin", KILN_CODE_PATH_OUTSIDE, "symbolic link"); /* to a folder whose name begins alike */
     refused("up/secret.bin", KILN_CODE_PATH_OUTSIDE, "symbolic link");
     refused("a.bin%00.png", KILN_CODE_PATH_OUTSIDE, "zero byte");
 }
