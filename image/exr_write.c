@@ -1,8 +1,11 @@
 #include <openexr.h>
 
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/arena.h"
 #include "base/file.h"
+#include "base/threads.h"
 #include "image/codec.h"
 #include "image/half.h"
 
@@ -101,8 +104,20 @@ static exr_result_t pack(exr_encode_pipeline_t *encode) {
     return EXR_ERR_SUCCESS;
 }
 
-static exr_result_t start_encoding(writer *w, const exr_chunk_info_t *chunk, exr_encode_pipeline_t *encode) {
-    exr_result_t code = exr_encoding_initialize(w->context, 0, chunk, encode);
+/* Some consecutive blocks of lines, two for each thread, compressed side by side and then written in order. */
+enum { BATCH = 64 };
+
+typedef struct batch {
+    writer *writer;
+    uint32_t first_line, lines; /* of each block */
+    exr_encode_pipeline_t blocks[BATCH];
+    exr_result_t codes[BATCH];
+} batch;
+
+static exr_result_t compress_block(writer *w, int y, exr_encode_pipeline_t *encode) {
+    exr_chunk_info_t chunk;
+    exr_result_t code = exr_write_scanline_chunk_info(w->context, 0, y, &chunk);
+    if (!code) code = exr_encoding_initialize(w->context, 0, &chunk, encode);
     for (int c = 0; !code && c < encode->channel_count; c++) { /* pack knows where the values are; the library asks */
         const kiln_exr_channel *channel = find_channel(w->file, encode->channels[c].channel_name);
         encode->channels[c].encode_from_ptr = (const uint8_t *)channel->values;
@@ -112,21 +127,46 @@ static exr_result_t start_encoding(writer *w, const exr_chunk_info_t *chunk, exr
     if (!code) code = exr_encoding_choose_default_routines(w->context, 0, encode);
     encode->convert_and_pack_fn = pack;
     encode->encoding_user_data = w;
+    encode->yield_until_ready_fn = NULL;
+    encode->write_fn = NULL;
+    return code ? code : exr_encoding_run(w->context, 0, encode);
+}
+
+static void compress(void *context, size_t item, uint32_t thread) {
+    batch *b = context;
+    (void)thread;
+    int y = (int)(b->writer->y0 + b->first_line + (uint32_t)item * b->lines);
+    b->codes[item] = compress_block(b->writer, y, &b->blocks[item]);
+}
+
+static exr_result_t write_batch(batch *b, size_t count) {
+    exr_context_t context = b->writer->context;
+    exr_result_t code = EXR_ERR_SUCCESS;
+    threads_for(b->writer->file->threads, count, compress, b);
+    for (size_t i = 0; i < count; i++) {
+        exr_encode_pipeline_t *e = &b->blocks[i];
+        if (!code) code = b->codes[i];
+        if (!code) code = exr_write_scanline_chunk(context, 0, e->chunk.start_y, e->compressed_buffer, e->compressed_bytes);
+        exr_encoding_destroy(context, e);
+    }
     return code;
 }
 
 static exr_result_t write_pixels(writer *w) {
-    exr_encode_pipeline_t encode = EXR_ENCODE_PIPELINE_INITIALIZER;
     int32_t lines = 0;
     exr_result_t code = exr_get_scanlines_per_chunk(w->context, 0, &lines);
-    for (uint32_t y = 0; !code && y < w->height; y += (uint32_t)lines) {
-        exr_chunk_info_t chunk;
-        code = exr_write_scanline_chunk_info(w->context, 0, (int)(w->y0 + y), &chunk);
-        if (!code && y == 0) code = start_encoding(w, &chunk, &encode);
-        else if (!code) code = exr_encoding_update(w->context, 0, &chunk, &encode);
-        if (!code) code = exr_encoding_run(w->context, 0, &encode);
+    uint32_t threads = w->file->threads ? w->file->threads : threads_available();
+    uint32_t blocks = threads < BATCH / 2 ? 2 * threads : BATCH;
+    batch *b = array_alloc(1, sizeof *b);
+    if (!b) code = EXR_ERR_OUT_OF_MEMORY;
+    for (uint32_t y = 0; !code && y < w->height; y += (uint32_t)lines * blocks) {
+        uint32_t left = (w->height - y + (uint32_t)lines - 1) / (uint32_t)lines;
+        b->writer = w;
+        b->first_line = y;
+        b->lines = (uint32_t)lines;
+        code = write_batch(b, left < blocks ? left : blocks);
     }
-    exr_encoding_destroy(w->context, &encode);
+    free(b);
     return code;
 }
 

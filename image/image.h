@@ -85,6 +85,7 @@ typedef struct kiln_exr_file {
     const kiln_exr_attribute *attributes;
     uint32_t attribute_count;
     const float *chromaticities;   /* red, green, blue, white xy; NULL: none written */
+    uint32_t threads;              /* that compress; 0: all available; the file is the same for any */
 } kiln_exr_file;
 
 /* Scanline EXR, ZIP-compressed. Whole or not at all. The same input gives the same bytes. */
