@@ -67,8 +67,9 @@ static exr_result_t write_header(writer *w) {
     if (!code) code = exr_add_part(w->context, NULL, EXR_STORAGE_SCANLINE, &part);
     if (!code) code = set_windows(w);
     for (uint32_t i = 0; !code && i < f->channel_count; i++)
-        code = exr_add_channel(w->context, 0, f->channels[i].name,
-                               f->channels[i].full ? EXR_PIXEL_FLOAT : EXR_PIXEL_HALF, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+        code =
+            exr_add_channel(w->context, 0, f->channels[i].name, f->channels[i].full ? EXR_PIXEL_FLOAT : EXR_PIXEL_HALF,
+                            EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     if (!code && f->chromaticities) {
         const float *c = f->chromaticities;
         exr_attr_chromaticities_t xy = {.red_x = c[0], .red_y = c[1], .green_x = c[2], .green_y = c[3],
@@ -146,7 +147,8 @@ static exr_result_t write_batch(batch *b, size_t count) {
     for (size_t i = 0; i < count; i++) {
         exr_encode_pipeline_t *e = &b->blocks[i];
         if (!code) code = b->codes[i];
-        if (!code) code = exr_write_scanline_chunk(context, 0, e->chunk.start_y, e->compressed_buffer, e->compressed_bytes);
+        if (!code)
+            code = exr_write_scanline_chunk(context, 0, e->chunk.start_y, e->compressed_buffer, e->compressed_bytes);
         exr_encoding_destroy(context, e);
     }
     return code;

@@ -31,9 +31,9 @@ kiln_image_kind image_kind(const void *bytes, size_t size);
 bool image_probe(const void *bytes, size_t size, kiln_image_info *, const kiln_where *where, kiln_report *);
 
 /* Decodes a whole file. The result needs at most limit bytes (0: 8 GiB), checked before allocating. PNG and TIFF of
- * 16 bits stay 16 bits; palettes and 1, 2, 4 bits become 8; EXR, HDR and TIFF of floats become F32; JPEG in CMYK becomes
- * RGB. An EXR file gives its display window, zero where it has no data. Colour profiles and gamma, and the orientation
- * in a JPEG, are ignored, as glTF asks. A damaged JPEG that still gives a picture is a warning. */
+ * 16 bits stay 16 bits; palettes and 1, 2, 4 bits become 8; EXR, HDR and TIFF of floats become F32; JPEG in CMYK
+ * becomes RGB. An EXR file gives its display window, zero where it has no data. Colour profiles and gamma, and the
+ * orientation in a JPEG, are ignored, as glTF asks. A damaged JPEG that still gives a picture is a warning. */
 bool image_decode(const void *bytes, size_t size, uint64_t limit, kiln_image *, const kiln_where *where, kiln_report *);
 
 bool image_alloc(kiln_image *, uint32_t width, uint32_t height, uint32_t channels, kiln_pixel_format, kiln_report *);

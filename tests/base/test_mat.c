@@ -93,7 +93,8 @@ static void translation_rotation_scale(void **state) {
         for (int i = 0; i < 4; i++) q[i] /= sqrt(length);
         mat4 r = mat4_trs((const double[]){0, 0, 0}, q, (const double[]){1, 1, 1});
         dvec3 p = random_vec(n);
-        assert_true(fabs(d3_length(mat4_vector(&r, p)) - d3_length(p)) < 1e-14 && fabs(mat4_determinant(&r) - 1) < 1e-14);
+        assert_true(fabs(d3_length(mat4_vector(&r, p)) - d3_length(p)) < 1e-14 &&
+                    fabs(mat4_determinant(&r) - 1) < 1e-14);
     }
 }
 

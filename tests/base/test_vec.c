@@ -10,7 +10,8 @@
 
 static int equal(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 static vec3 random_vec(uint32_t n) {
-    return v3(unit_float(hash_pair(n, 0)) * 2 - 1, unit_float(hash_pair(n, 1)) * 2 - 1, unit_float(hash_pair(n, 2)) * 2 - 1);
+    return v3(unit_float(hash_pair(n, 0)) * 2 - 1, unit_float(hash_pair(n, 1)) * 2 - 1,
+              unit_float(hash_pair(n, 2)) * 2 - 1);
 }
 
 static void arithmetic(void **state) {

@@ -29,8 +29,8 @@ static inline void exr_maker_ok(exr_result_t code) {
 /* value(x, y, channel) in the file's frame, as floats. */
 typedef float exr_value(int x, int y, int channel);
 
-static inline void exr_maker_chunk(exr_context_t file, int part, const exr_chunk_info_t *chunk, const exr_form *f, int x0,
-                                   int y0, exr_value *value) {
+static inline void exr_maker_chunk(exr_context_t file, int part, const exr_chunk_info_t *chunk, const exr_form *f,
+                                   int x0, int y0, exr_value *value) {
     exr_encode_pipeline_t encode = EXR_ENCODE_PIPELINE_INITIALIZER;
     float *planes[8] = {0};
     exr_maker_ok(exr_encoding_initialize(file, part, chunk, &encode));

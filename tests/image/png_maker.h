@@ -20,7 +20,8 @@ typedef struct png_form {
 } png_form;
 
 /* Rows as PNG stores them, 16 bits big-endian. */
-static inline kiln_text make_png(uint32_t width, uint32_t height, png_form f, const unsigned char *rows, size_t stride) {
+static inline kiln_text make_png(uint32_t width, uint32_t height, png_form f, const unsigned char *rows,
+                                 size_t stride) {
     kiln_text out = {0};
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, NULL, NULL);
     png_infop info = png_create_info_struct(png);

@@ -29,8 +29,14 @@ static inline kiln_bytes seed_png(int form) {
     if (form == 0) return seed_display("a.png", 3, 8, 0);
     if (form == 1) return seed_display("a.png", 4, 16, 0);
     return seed_text(make_png(19, 13,
-                              (png_form){.type = PNG_COLOR_TYPE_PALETTE, .bits = 2, .palette = palette, .palette_count = 4,
-                                         .alpha = alpha, .alpha_count = 2, .interlace = PNG_INTERLACE_ADAM7, .gamma = 0.5},
+                              (png_form){.type = PNG_COLOR_TYPE_PALETTE,
+                                         .bits = 2,
+                                         .palette = palette,
+                                         .palette_count = 4,
+                                         .alpha = alpha,
+                                         .alpha_count = 2,
+                                         .interlace = PNG_INTERLACE_ADAM7,
+                                         .gamma = 0.5},
                               rows, 5));
 }
 
@@ -43,11 +49,14 @@ static inline kiln_bytes seed_jpeg(int form) {
 static inline kiln_bytes seed_tiff(int form) {
     unsigned char rows[13 * 19 * 4];
     for (uint32_t i = 0; i < sizeof rows; i++) rows[i] = (unsigned char)(i / 7);
-    tiff_form tiled = {.bits = 8, .samples = 3, .photometric = PHOTOMETRIC_RGB, .tile = 16, .compression = COMPRESSION_LZW};
+    tiff_form tiled = {
+        .bits = 8, .samples = 3, .photometric = PHOTOMETRIC_RGB, .tile = 16, .compression = COMPRESSION_LZW};
     tiff_form planar = {.bits = 8, .samples = 4, .photometric = PHOTOMETRIC_RGB, .planar = PLANARCONFIG_SEPARATE,
                         .has_extra = true, .extra = EXTRASAMPLE_ASSOCALPHA, .compression = COMPRESSION_PACKBITS};
-    tiff_form ink = {.bits = 8, .samples = 4, .photometric = PHOTOMETRIC_SEPARATED, .compression = COMPRESSION_ADOBE_DEFLATE};
-    tiff_form fax = {.bits = 1, .samples = 1, .photometric = PHOTOMETRIC_MINISWHITE, .compression = COMPRESSION_CCITTFAX4};
+    tiff_form ink = {
+        .bits = 8, .samples = 4, .photometric = PHOTOMETRIC_SEPARATED, .compression = COMPRESSION_ADOBE_DEFLATE};
+    tiff_form fax = {
+        .bits = 1, .samples = 1, .photometric = PHOTOMETRIC_MINISWHITE, .compression = COMPRESSION_CCITTFAX4};
     switch (form) {
     case 0: return seed_display("a.tif", 4, 16, 0);
     case 1: return make_tiff(19, 13, tiled, rows);
@@ -57,7 +66,9 @@ static inline kiln_bytes seed_tiff(int form) {
     }
 }
 
-static inline float seed_value(int x, int y, int channel) { return (float)(hash_triple((uint32_t)x, (uint32_t)y, (uint32_t)channel) & 15); }
+static inline float seed_value(int x, int y, int channel) {
+    return (float)(hash_triple((uint32_t)x, (uint32_t)y, (uint32_t)channel) & 15);
+}
 
 static inline kiln_bytes seed_exr(int form) {
     static const exr_compression_t compressions[] = {EXR_COMPRESSION_NONE, EXR_COMPRESSION_RLE, EXR_COMPRESSION_ZIP,

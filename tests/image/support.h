@@ -15,7 +15,7 @@
 
 #define COUNT(array) ((int)(sizeof(array) / sizeof(array)[0]))
 
-/* Multiples of 1/255 or 1/65535, different everywhere, 0 and 1 among them: files of that many bits hold them exactly. */
+/* Multiples of 1/255 or 1/65535, noise with 0 and 1 in it: files of that many bits hold them exactly. */
 static inline kiln_image pattern(uint32_t width, uint32_t height, uint32_t channels, uint32_t bits) {
     kiln_report *report = kiln_report_create();
     kiln_image image;
@@ -139,7 +139,8 @@ static inline void same_picture(const kiln_image *got, const kiln_image *want, f
     for (size_t i = 0; i < (size_t)got->width * got->height * got->channels; i++) {
         float difference = value_at(got, i) - value_at(want, i) * largest;
         if (!(difference >= -tolerance - 1e-3f && difference <= tolerance + 1e-3f))
-            fail_msg("sample %d is %g, not %g", (int)i, (double)value_at(got, i), (double)(value_at(want, i) * largest));
+            fail_msg("sample %d is %g, not %g", (int)i, (double)value_at(got, i),
+                     (double)(value_at(want, i) * largest));
     }
 }
 

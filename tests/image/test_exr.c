@@ -31,8 +31,8 @@ static void check(const exr_form *parts, int count, int part, uint32_t channels,
                 bool inside = x >= f->data[0] && x <= f->data[2] && y >= f->data[1] && y <= f->data[3];
                 float want = inside ? ramp(x, y, order[c]) : 0;
                 if (fabsf(value_at(&image, i) - want) > tolerance * want)
-                    fail_msg("compression %d, tile %d: channel %d at %d, %d is %g, not %g", f->compression, f->tile, (int)c,
-                             x, y, (double)value_at(&image, i), (double)want);
+                    fail_msg("compression %d, tile %d: channel %d at %d, %d is %g, not %g", f->compression, f->tile,
+                             (int)c, x, y, (double)value_at(&image, i), (double)want);
             }
     image_free(&image);
     text_free(&file);
@@ -41,7 +41,8 @@ static void check(const exr_form *parts, int count, int part, uint32_t channels,
 static const int rgb_order[] = {2, 1, 0}, grey_order[] = {0};
 
 static exr_form rgb_form(void) {
-    return (exr_form){.channels = {"B", "G", "R"}, .type = EXR_PIXEL_HALF, .data = {0, 0, 69, 44}, .display = {0, 0, 69, 44}};
+    return (exr_form){
+        .channels = {"B", "G", "R"}, .type = EXR_PIXEL_HALF, .data = {0, 0, 69, 44}, .display = {0, 0, 69, 44}};
 }
 
 static void every_type_layout_and_compression(void **state) {
@@ -102,7 +103,8 @@ static float half_alpha(int x, int y, int channel) {
 
 static void colour_becomes_straight(void **state) {
     (void)state;
-    exr_form f = {.channels = {"A", "B", "G", "R"}, .type = EXR_PIXEL_FLOAT, .data = {0, 0, 1, 0}, .display = {0, 0, 1, 0}};
+    exr_form f = {
+        .channels = {"A", "B", "G", "R"}, .type = EXR_PIXEL_FLOAT, .data = {0, 0, 1, 0}, .display = {0, 0, 1, 0}};
     kiln_text file = make_exr(&f, 1, half_alpha);
     kiln_image image = decode_well(file.data, file.length);
     const float want[8] = {0.25f, 0.25f, 0.25f, 0, 0.5f, 0.5f, 0.5f, 0.5f};

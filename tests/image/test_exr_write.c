@@ -55,7 +55,8 @@ static void pixels_come_back(void **state) {
     for (int full = 0; full <= 1; full++) {
         const kiln_exr_channel channels[3] = {
             {"R", values, 3, full}, {"G", values + 1, 3, full}, {"B", values + 2, 3, full}};
-        kiln_bytes file = write_exr(&(kiln_exr_file){.width = WIDTH, .height = HEIGHT, .channels = channels, .channel_count = 3});
+        kiln_bytes file =
+            write_exr(&(kiln_exr_file){.width = WIDTH, .height = HEIGHT, .channels = channels, .channel_count = 3});
         kiln_image image = decode_well(file.data, file.size);
         assert_int_equal(image.width, WIDTH);
         assert_int_equal(image.height, HEIGHT);
@@ -92,8 +93,9 @@ static void a_crop_is_the_data_window(void **state) {
 static void metadata_is_written(void **state) {
     (void)state;
     float value = 1;
-    const kiln_exr_channel channels[] = {
-        {"lightgroup:a_key_light_with_a_rather_long_name.R", &value, 1, false}, {"Z", &value, 1, true}, {"albedo.R", &value, 1, false}};
+    const kiln_exr_channel channels[] = {{"lightgroup:a_key_light_with_a_rather_long_name.R", &value, 1, false},
+                                         {"Z", &value, 1, true},
+                                         {"albedo.R", &value, 1, false}};
     const kiln_exr_attribute attributes[] = {{"comments", KILN_EXR_STRING, "gr\xc3\xbc\xc3\x9f", 0},
                                              {"kiln:spp", KILN_EXR_INT, NULL, 64},
                                              {"kiln:error", KILN_EXR_FLOAT, NULL, 0.25},
@@ -182,8 +184,10 @@ static void fails(const char *path, const kiln_exr_file *file) {
 static void failures_leave_nothing_behind(void **state) {
     (void)state;
     float value = 1;
-    const kiln_exr_channel same[2] = {{"Y", &value, 1, false}, {"Y", &value, 1, false}}, unnamed = {"", &value, 1, false};
-    const kiln_exr_attribute unnamed_attribute = {"", KILN_EXR_INT, NULL, 0}, kind = {"channels", KILN_EXR_INT, NULL, 0};
+    const kiln_exr_channel same[2] = {{"Y", &value, 1, false}, {"Y", &value, 1, false}},
+                           unnamed = {"", &value, 1, false};
+    const kiln_exr_attribute unnamed_attribute = {"", KILN_EXR_INT, NULL, 0},
+                             kind = {"channels", KILN_EXR_INT, NULL, 0};
     kiln_exr_file good = {.width = 1, .height = 1, .channels = same, .channel_count = 1}, f;
     folder there = folder_make("a.exr");
     fails("/nonexistent/a.exr", &good);

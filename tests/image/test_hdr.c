@@ -27,7 +27,8 @@ static void check(kiln_text file, uint32_t width, uint32_t height, const float *
     assert_int_equal(image.channels, 3);
     assert_int_equal(image.format, KILN_PIXELS_F32);
     for (size_t i = 0; i < (size_t)width * height * 3; i++)
-        if (value_at(&image, i) != want[i]) fail_msg("sample %d is %g, not %g", (int)i, (double)value_at(&image, i), (double)want[i]);
+        if (value_at(&image, i) != want[i])
+            fail_msg("sample %d is %g, not %g", (int)i, (double)value_at(&image, i), (double)want[i]);
     image_free(&image);
     text_free(&file);
 }
@@ -88,13 +89,14 @@ static void orientations(void **state) {
 
 static void exposure_and_colour_correction_are_undone(void **state) {
     (void)state;
-    check(MAKE("#?RGBE\n# a comment\nEXPOSURE=2\nEXPOSURE= 4.0\nCOLORCORR=1 2 0.5\n\n-Y 1 +X 1\n", "\x08\x08\x08\x88"), 1, 1,
-          (const float[]){1, 0.5f, 2});
+    check(MAKE("#?RGBE\n# a comment\nEXPOSURE=2\nEXPOSURE= 4.0\nCOLORCORR=1 2 0.5\n\n-Y 1 +X 1\n", "\x08\x08\x08\x88"),
+          1, 1, (const float[]){1, 0.5f, 2});
 }
 
 static void other_headers(void **state) {
     (void)state;
-    check(MAKE("#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 1 +X 1\r\n", "\x08\x08\x08\x88"), 1, 1, (const float[]){8, 8, 8});
+    check(MAKE("#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 1 +X 1\r\n", "\x08\x08\x08\x88"), 1, 1,
+          (const float[]){8, 8, 8});
     kiln_text file = MAKE("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n", "\x08\x08\x08\x88");
     decode_fails(file.data, file.length, KILN_CODE_IMAGE);
     text_free(&file);

@@ -48,7 +48,9 @@ static void the_header_agrees_with_the_picture(void **state) {
         assert_true(info.width == image.width && info.height == image.height);
         assert_true(info.channels == image.channels && info.format == image.format);
         assert_int_equal(image_bytes(&image), (size_t)image.width * image.height * image.channels *
-                                                  (image.format == KILN_PIXELS_U8 ? 1 : image.format == KILN_PIXELS_U16 ? 2 : 4));
+                                                  (image.format == KILN_PIXELS_U8    ? 1
+                                                   : image.format == KILN_PIXELS_U16 ? 2
+                                                                                     : 4));
         kiln_report_destroy(report);
         image_free(&image);
         assert_null(image.pixels);

@@ -41,9 +41,11 @@ static void forms_of_colour(void **state) {
     (void)state;
     const unsigned char grey[] = {77}, rgb[] = {200, 100, 50}, ink[] = {255, 51, 0, 204};
     const int as_grey[] = {77}, as_rgb[] = {200, 100, 50};
-    kiln_bytes file = make_jpeg(20, 10, (jpeg_form){.input = JCS_GRAYSCALE, .file = JCS_GRAYSCALE, .components = 1, .progressive = true}, grey);
+    kiln_bytes file = make_jpeg(
+        20, 10, (jpeg_form){.input = JCS_GRAYSCALE, .file = JCS_GRAYSCALE, .components = 1, .progressive = true}, grey);
     check_colour(&file, 20, 10, 1, as_grey);
-    file = make_jpeg(20, 10, (jpeg_form){.input = JCS_RGB, .file = JCS_YCbCr, .components = 3, .progressive = true}, rgb);
+    file =
+        make_jpeg(20, 10, (jpeg_form){.input = JCS_RGB, .file = JCS_YCbCr, .components = 3, .progressive = true}, rgb);
     check_colour(&file, 20, 10, 3, as_rgb);
     file = make_jpeg(20, 10, (jpeg_form){.input = JCS_RGB, .file = JCS_RGB, .components = 3}, rgb);
     check_colour(&file, 20, 10, 3, as_rgb);
@@ -56,7 +58,8 @@ static void forms_of_colour(void **state) {
     check_colour(&file, 20, 10, 3, inverted);
     /* Without Adobe's marker 255 is full ink: 0, (255 − 51) (255 − 204)/255, 255 − 204. */
     const int plain[] = {0, 41, 51};
-    file = make_jpeg(20, 10, (jpeg_form){.input = JCS_CMYK, .file = JCS_CMYK, .components = 4, .no_adobe_marker = true}, ink);
+    file = make_jpeg(20, 10, (jpeg_form){.input = JCS_CMYK, .file = JCS_CMYK, .components = 4, .no_adobe_marker = true},
+                     ink);
     check_colour(&file, 20, 10, 3, plain);
 }
 
@@ -64,7 +67,8 @@ static void orientation_is_ignored(void **state) {
     (void)state;
     const unsigned char rgb[] = {200, 100, 50};
     const int want[] = {200, 100, 50};
-    kiln_bytes file = make_jpeg(20, 10, (jpeg_form){.input = JCS_RGB, .file = JCS_YCbCr, .components = 3, .exif_turned = true}, rgb);
+    kiln_bytes file =
+        make_jpeg(20, 10, (jpeg_form){.input = JCS_RGB, .file = JCS_YCbCr, .components = 3, .exif_turned = true}, rgb);
     check_colour(&file, 20, 10, 3, want);
 }
 
@@ -76,10 +80,18 @@ static void too_many_scans_are_refused(void **state) {
     int count = 1;
     for (int low = 4; low >= 0; low--)
         for (int k = 1; k < 64; k++) scans[count++] = (jpeg_scan_info){1, {0}, k, k, low == 4 ? 0 : low + 1, low};
-    kiln_bytes file = make_jpeg(16, 16, (jpeg_form){.input = JCS_GRAYSCALE, .file = JCS_GRAYSCALE, .components = 1, .scans = scans, .scan_count = count}, grey);
+    kiln_bytes file = make_jpeg(
+        16, 16,
+        (jpeg_form){
+            .input = JCS_GRAYSCALE, .file = JCS_GRAYSCALE, .components = 1, .scans = scans, .scan_count = count},
+        grey);
     decode_fails(file.data, file.size, KILN_CODE_IMAGE);
     file_free(&file);
-    file = make_jpeg(16, 16, (jpeg_form){.input = JCS_GRAYSCALE, .file = JCS_GRAYSCALE, .components = 1, .scans = scans, .scan_count = 1 + 63 * 2}, grey);
+    file = make_jpeg(
+        16, 16,
+        (jpeg_form){
+            .input = JCS_GRAYSCALE, .file = JCS_GRAYSCALE, .components = 1, .scans = scans, .scan_count = 1 + 63 * 2},
+        grey);
     check_colour(&file, 16, 16, 1, (const int[]){77});
 }
 

@@ -10,7 +10,8 @@
 
 #include "png_maker.h"
 
-static void check_samples(kiln_text *file, uint32_t channels, kiln_pixel_format format, const unsigned *want, int count) {
+static void check_samples(kiln_text *file, uint32_t channels, kiln_pixel_format format, const unsigned *want,
+                          int count) {
     kiln_image image = decode_well(file->data, file->length);
     assert_int_equal(image.channels, channels);
     assert_int_equal(image.format, format);
@@ -49,8 +50,9 @@ static void small_and_indexed_forms_become_eight_bits(void **state) {
     const png_color palette[3] = {{10, 20, 30}, {40, 50, 60}, {70, 80, 90}};
     const png_byte alpha[2] = {0, 128};
     const unsigned char indices[1] = {0x18}; /* 0 1 2 0 in two bits each */
-    kiln_text file = make_png(4, 1, (png_form){.type = PNG_COLOR_TYPE_PALETTE, .bits = 2, .palette = palette, .palette_count = 3},
-                              indices, 1);
+    kiln_text file =
+        make_png(4, 1, (png_form){.type = PNG_COLOR_TYPE_PALETTE, .bits = 2, .palette = palette, .palette_count = 3},
+                 indices, 1);
     check_samples(&file, 3, KILN_PIXELS_U8, (const unsigned[]){10, 20, 30, 40, 50, 60, 70, 80, 90, 10, 20, 30}, 12);
     file = make_png(4, 1,
                     (png_form){.type = PNG_COLOR_TYPE_PALETTE, .bits = 2, .palette = palette, .palette_count = 3,
@@ -68,8 +70,8 @@ static void small_and_indexed_forms_become_eight_bits(void **state) {
 static void transparent_colours_become_alpha(void **state) {
     (void)state;
     const unsigned char grey[2] = {7, 9}, rgb[6] = {1, 2, 3, 4, 5, 6}, wide[4] = {0x12, 0x34, 0x12, 0x35};
-    kiln_text file = make_png(2, 1, (png_form){.type = PNG_COLOR_TYPE_GRAY, .bits = 8, .transparent = &(png_color_16){.gray = 9}},
-                              grey, 2);
+    kiln_text file = make_png(
+        2, 1, (png_form){.type = PNG_COLOR_TYPE_GRAY, .bits = 8, .transparent = &(png_color_16){.gray = 9}}, grey, 2);
     check_samples(&file, 2, KILN_PIXELS_U8, (const unsigned[]){7, 255, 9, 0}, 4);
     file = make_png(2, 1,
                     (png_form){.type = PNG_COLOR_TYPE_RGB, .bits = 8,
@@ -77,7 +79,8 @@ static void transparent_colours_become_alpha(void **state) {
                     rgb, 6);
     check_samples(&file, 4, KILN_PIXELS_U8, (const unsigned[]){1, 2, 3, 0, 4, 5, 6, 255}, 8);
     file = make_png(2, 1,
-                    (png_form){.type = PNG_COLOR_TYPE_GRAY, .bits = 16, .transparent = &(png_color_16){.gray = 0x1234}}, wide, 4);
+                    (png_form){.type = PNG_COLOR_TYPE_GRAY, .bits = 16, .transparent = &(png_color_16){.gray = 0x1234}},
+                    wide, 4);
     check_samples(&file, 2, KILN_PIXELS_U16, (const unsigned[]){0x1234, 0, 0x1235, 65535}, 4);
 }
 
@@ -87,7 +90,8 @@ static void interlacing_and_gamma_change_nothing(void **state) {
     for (int i = 0; i < 13 * 33; i++) (&rows[0][0])[i] = (unsigned char)hash32((uint32_t)i);
     kiln_text plain = make_png(11, 13, (png_form){.type = PNG_COLOR_TYPE_RGB, .bits = 8}, &rows[0][0], 33);
     kiln_text other = make_png(
-        11, 13, (png_form){.type = PNG_COLOR_TYPE_RGB, .bits = 8, .interlace = PNG_INTERLACE_ADAM7, .gamma = 1.0}, &rows[0][0], 33);
+        11, 13, (png_form){.type = PNG_COLOR_TYPE_RGB, .bits = 8, .interlace = PNG_INTERLACE_ADAM7, .gamma = 1.0},
+        &rows[0][0], 33);
     kiln_image a = decode_well(plain.data, plain.length), b = decode_well(other.data, other.length);
     assert_memory_equal(a.pixels, rows, sizeof rows);
     assert_memory_equal(b.pixels, rows, sizeof rows);
@@ -118,7 +122,8 @@ static void colour_and_text_chunks_are_written(void **state) {
     const unsigned char *data, srgb_points[4] = {1, 13, 0, 1}, p3_points[4] = {12, 13, 0, 1};
     size_t at, pixels_at;
     kiln_image image = pattern(4, 4, 3, 8);
-    kiln_bytes file = encode_display("a.png", &image, (kiln_image_write_options){.srgb = true, .text = text, .text_count = 2});
+    kiln_bytes file =
+        encode_display("a.png", &image, (kiln_image_write_options){.srgb = true, .text = text, .text_count = 2});
     assert_true(find_chunk(&file, "IDAT", &data, &pixels_at) > 0);
     assert_int_equal(find_chunk(&file, "sRGB", &data, &at), 1);
     assert_true(at < pixels_at);

@@ -83,7 +83,8 @@ static void layouts(void **state) {
         want[i] = rows[i];
     }
     tiff_form f = {.bits = 8, .samples = 3, .photometric = PHOTOMETRIC_RGB};
-    const uint16_t compressions[] = {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_PACKBITS, COMPRESSION_ADOBE_DEFLATE};
+    const uint16_t compressions[] = {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_PACKBITS,
+                                     COMPRESSION_ADOBE_DEFLATE};
     for (int i = 0; i < COUNT(compressions); i++) {
         f.compression = compressions[i];
         check(make_tiff(WIDTH, HEIGHT, f, rows), 3, KILN_PIXELS_U8, want, HEIGHT * WIDTH * 3);
@@ -99,18 +100,27 @@ static void layouts(void **state) {
 static void alpha_becomes_straight(void **state) {
     (void)state;
     const unsigned char rgba[8] = {50, 25, 0, 100, 9, 8, 7, 0};
-    tiff_form f = {.bits = 8, .samples = 4, .photometric = PHOTOMETRIC_RGB, .has_extra = true, .extra = EXTRASAMPLE_UNASSALPHA};
+    tiff_form f = {
+        .bits = 8, .samples = 4, .photometric = PHOTOMETRIC_RGB, .has_extra = true, .extra = EXTRASAMPLE_UNASSALPHA};
     check(make_tiff(2, 1, f, rgba), 4, KILN_PIXELS_U8, (const float[]){50, 25, 0, 100, 9, 8, 7, 0}, 8);
     f.extra = EXTRASAMPLE_ASSOCALPHA; /* 50 · 255/100 = 127.5 → 128; 25 → 64; under alpha 0 nothing changes */
     check(make_tiff(2, 1, f, rgba), 4, KILN_PIXELS_U8, (const float[]){128, 64, 0, 100, 9, 8, 7, 0}, 8);
     f.extra = EXTRASAMPLE_UNSPECIFIED; /* who knows what the fourth is: not alpha */
     check(make_tiff(2, 1, f, rgba), 3, KILN_PIXELS_U8, (const float[]){50, 25, 0, 9, 8, 7}, 6);
     const uint16_t wide[2] = {100, 1000};
-    f = (tiff_form){.bits = 16, .samples = 2, .photometric = PHOTOMETRIC_MINISBLACK, .has_extra = true, .extra = EXTRASAMPLE_ASSOCALPHA};
+    f = (tiff_form){.bits = 16,
+                    .samples = 2,
+                    .photometric = PHOTOMETRIC_MINISBLACK,
+                    .has_extra = true,
+                    .extra = EXTRASAMPLE_ASSOCALPHA};
     check(make_tiff(1, 1, f, wide), 2, KILN_PIXELS_U16, (const float[]){6554, 1000}, 2); /* 6553.5 rounds up */
     const float floats[4] = {0.5f, 1, 0, 0.25f};
-    f = (tiff_form){.bits = 32, .samples = 4, .photometric = PHOTOMETRIC_RGB, .has_extra = true, .extra = EXTRASAMPLE_ASSOCALPHA,
-               .format = SAMPLEFORMAT_IEEEFP};
+    f = (tiff_form){.bits = 32,
+                    .samples = 4,
+                    .photometric = PHOTOMETRIC_RGB,
+                    .has_extra = true,
+                    .extra = EXTRASAMPLE_ASSOCALPHA,
+                    .format = SAMPLEFORMAT_IEEEFP};
     check(make_tiff(1, 1, f, floats), 4, KILN_PIXELS_F32, (const float[]){2, 4, 0, 0.25f}, 4);
 }
 
@@ -133,7 +143,8 @@ static void converted_forms(void **state) {
     const uint16_t palette[3 * 4] = {0, 0xffff, 0x8000, 0, 0, 0, 0x4000, 0, 0xffff, 0, 0, 0};
     const unsigned char indices[1] = {0x18}; /* 0 1 2 0 */
     tiff_form f = {.bits = 2, .samples = 1, .photometric = PHOTOMETRIC_PALETTE, .palette = palette};
-    check(make_tiff(4, 1, f, indices), 3, KILN_PIXELS_U8, (const float[]){0, 0, 255, 255, 0, 0, 128, 64, 0, 0, 0, 255}, 12);
+    check(make_tiff(4, 1, f, indices), 3, KILN_PIXELS_U8, (const float[]){0, 0, 255, 255, 0, 0, 128, 64, 0, 0, 0, 255},
+          12);
     const unsigned char bits[1] = {0x80}, grey[1] = {255}, ink[4] = {255, 0, 0, 0};
     f = (tiff_form){.bits = 1, .samples = 1, .photometric = PHOTOMETRIC_MINISBLACK};
     check(make_tiff(2, 1, f, bits), 3, KILN_PIXELS_U8, (const float[]){255, 255, 255, 0, 0, 0}, 6);
@@ -150,8 +161,10 @@ static void unusual_samples_are_refused(void **state) {
     kiln_bytes file = make_tiff(1, 1, (tiff_form){.bits = 32, .samples = 3, .photometric = PHOTOMETRIC_RGB}, integers);
     decode_fails(file.data, file.size, KILN_CODE_IMAGE);
     file_free(&file);
-    file = make_tiff(1, 1, (tiff_form){.bits = 64, .samples = 1, .format = SAMPLEFORMAT_IEEEFP, .photometric = PHOTOMETRIC_MINISBLACK},
-                     doubles);
+    file = make_tiff(
+        1, 1,
+        (tiff_form){.bits = 64, .samples = 1, .format = SAMPLEFORMAT_IEEEFP, .photometric = PHOTOMETRIC_MINISBLACK},
+        doubles);
     decode_fails(file.data, file.size, KILN_CODE_IMAGE);
     file_free(&file);
 }
@@ -159,11 +172,13 @@ static void unusual_samples_are_refused(void **state) {
 static void a_giant_tile_is_refused_before_it_is_allocated(void **state) {
     (void)state;
     const unsigned char row[1] = {7};
-    kiln_bytes file = make_tiff(1, 1, (tiff_form){.bits = 8, .samples = 1, .photometric = PHOTOMETRIC_MINISBLACK, .tile = 16}, row);
+    kiln_bytes file =
+        make_tiff(1, 1, (tiff_form){.bits = 8, .samples = 1, .photometric = PHOTOMETRIC_MINISBLACK, .tile = 16}, row);
     /* The tile's sides, entries 322 and 323 of the directory, SHORT or LONG: 65520 each. */
     int patched = 0;
     for (size_t i = 0; i + 12 <= file.size; i++)
-        if ((file.data[i] == 0x42 || file.data[i] == 0x43) && file.data[i + 1] == 1 && file.data[i + 4] == 1 && file.data[i + 8] == 16) {
+        if ((file.data[i] == 0x42 || file.data[i] == 0x43) && file.data[i + 1] == 1 && file.data[i + 4] == 1 &&
+            file.data[i + 8] == 16) {
             file.data[i + 8] = 0xf0;
             file.data[i + 9] = 0xff;
             patched++;
