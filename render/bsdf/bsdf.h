@@ -82,12 +82,14 @@ KERNEL vec3 bsdf_reflection_fresnel(unsigned mask, const bsdf *b, float c) {
     return f;
 }
 
+/* Tables are read unconditionally and blended by flags of 0 and 1: a load under a condition would not vectorise. */
 KERNEL float bsdf_full(float mu, float alpha, albedo_node roughness) {
-    return bsdf_is_mirror(alpha) ? 1.0f : albedo_full(mu, alpha, roughness);
+    return fm_lerp(albedo_full(mu, alpha, roughness), 1.0f, bsdf_is_mirror(alpha) ? 1.0f : 0.0f);
 }
 /* What the coat reflects in all, seen from mu: full is bsdf_full there. */
 KERNEL vec3 bsdf_coat_albedo(const bsdf *b, float mu, float full, albedo_node roughness) {
-    float share = bsdf_is_mirror(b->alpha) ? fresnel_schlick_weight(mu) : albedo_schlick_share(mu, roughness);
+    float share = fm_lerp(albedo_schlick_share(mu, roughness), fresnel_schlick_weight(mu),
+                          bsdf_is_mirror(b->alpha) ? 1.0f : 0.0f);
     return v3_scale(v3_madd(b->f0, share, v3_sub(v3_splat(b->f90), b->f0)), full);
 }
 
@@ -95,12 +97,12 @@ KERNEL vec3 bsdf_coat_albedo(const bsdf *b, float mu, float full, albedo_node ro
  * straight on loses nothing. */
 KERNEL float bsdf_interface_loss(const bsdf *b, const float *slices, int32_t slice, float mu, float full,
                                  albedo_node roughness) {
-    float e = b->thin > 0.5f ? full : albedo_interface(slices, slice, mu, b->alpha, roughness);
-    return bsdf_is_straight(b) ? 0.0f : 1.0f - e;
+    float e = fm_lerp(albedo_interface(slices, slice, mu, b->alpha, roughness), full, b->thin);
+    return (1.0f - e) * (bsdf_is_straight(b) ? 0.0f : 1.0f);
 }
 KERNEL float bsdf_interface_mean_loss(const bsdf *b, const float *slices, int32_t slice, float full_mean,
                                       albedo_node roughness) {
-    float e = b->thin > 0.5f ? full_mean : albedo_interface_mean(slices, slice, roughness);
+    float e = fm_lerp(albedo_interface_mean(slices, slice, roughness), full_mean, b->thin);
     return fm_max(1.0f - e, 1e-4f); /* a divisor; where it is this small there is nothing to compensate */
 }
 
@@ -285,7 +287,9 @@ KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 d
     }
     wi = v3_select(reflect, mirrored, wi);
 
-    int delta = (reflect & mirror) | (transmit & straight);
+    /* In numbers: gcc makes of the flags a choice between truth values, which does not vectorise. */
+    float reflect_spread = reflect ? b->alpha : 1.0f, transmit_spread = transmit & straight ? 0.0f : 1.0f;
+    int delta = reflect_spread * transmit_spread < GGX_ALPHA_MIN;
     /* A microfacet may send light to the wrong side of the surface, or refuse to refract: absorbed; the energy comes
      * back as multiple scattering. */
     int lives = ((transmit | below) ? wi.z < 0.0f : wi.z > 0.0f) & refracts;

@@ -67,6 +67,7 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) } path_hit;
     X(float, transmission) X(float, eta) X(float, thin)                                                                \
     X(int32_t, near_slice) X(int32_t, far_slice)                                                                       \
     X(uint32_t, medium)                          /* behind the surface; 0: none */                                     \
+    X(uint32_t, crosses)                         /* the next ray lies on the far side */                               \
     X(float, emit_r) X(float, emit_g) X(float, emit_b)                                                                 \
     X(float, map_x) X(float, map_y) X(float, map_z) /* tangent-space normal */                                         \
     X(float, tan_x) X(float, tan_y) X(float, tan_z) X(float, tan_w)

@@ -13,19 +13,18 @@
 /* 0.99: two mirrors facing each other absorb nothing; a path between them must end all the same. */
 #define ROULETTE_MOST 0.99f
 
-typedef struct roulette { int fixed, by_throughput; float p; } roulette;
+/* A policy at one depth: survival = constant + slope · largest channel. */
+typedef struct roulette { float constant, slope; } roulette;
 
 static inline roulette roulette_make(const path_context *c, uint32_t depth) {
-    int beyond = depth >= c->max_depth; /* probes must end soon whatever the policy is */
-    return (roulette){.fixed = c->roulette == KILN_ROULETTE_FIXED && !beyond,
-                      .by_throughput = (c->roulette == KILN_ROULETTE_THROUGHPUT && depth >= c->roulette_min) || beyond,
-                      .p = c->roulette_p};
+    bool beyond = depth >= c->max_depth; /* probes must end soon, whatever the policy */
+    if (beyond || (c->roulette == KILN_ROULETTE_THROUGHPUT && depth >= c->roulette_min)) return (roulette){0.0f, 1.0f};
+    return (roulette){c->roulette == KILN_ROULETTE_FIXED ? c->roulette_p : 1.0f, 0.0f};
 }
 
 KERNEL float roulette_survival(const roulette *r, vec3 throughput, float squeeze) {
     float largest = fm_clamp(v3_max(throughput) * squeeze, 0.0f, ROULETTE_MOST);
-    float survival = r->by_throughput ? largest : 1.0f;
-    survival = r->fixed ? r->p : survival;
+    float survival = r->constant + r->slope * largest;
     return survival > 0.0f ? survival : 1.0f; /* a dead path needs no roulette */
 }
 

@@ -20,8 +20,7 @@ KERNEL void scatter(unsigned mask, const path_context *c, batch *b, lane_range l
             int crosses = next.wi.z < 0.0f, bends = crosses & (p.bsdf.thin < 0.5f);
             squeeze *= bends ? p.bsdf.eta * p.bsdf.eta : 1.0f;
             s->squeeze[i] = squeeze;
-            uint64_t crossed = medium_cross(s->media[i], x->medium[i], x->front[i] > 0.5f);
-            s->media[i] = crosses ? crossed : s->media[i];
+            x->crosses[i] = (uint32_t)crosses;
         }
         float survival = roulette_survival(&r, throughput, squeeze);
         float kept = x->u_roulette[i] < survival ? 1.0f / survival : 0.0f;
@@ -34,8 +33,17 @@ KERNEL void scatter(unsigned mask, const path_context *c, batch *b, lane_range l
     }
 }
 
+/* Apart from the loop above: 64-bit selects would keep it from vectorising. */
+static void cross_media(batch *b) {
+    path_state *s = batch_state(b);
+    const path_scratch *x = &b->scratch;
+    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_TRANSMISSIVE].end; i++)
+        if (x->crosses[i]) s->media[i] = medium_cross(s->media[i], x->medium[i], x->front[i] > 0.5f);
+}
+
 void STAGE(scatter)(const path_context *c, batch *b) {
     scatter(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
     scatter(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
     scatter(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
+    cross_media(b);
 }
