@@ -7,7 +7,8 @@
 
 /* The content decides, whatever the name says; a suffix of another format is a better message. */
 static bool check_suffix(const char *path, kiln_report *report) {
-    static const char *const others[] = {".usd", ".usda", ".usdc", ".usdz", ".obj", ".fbx", ".blend", ".abc", ".stl", ".ply"};
+    static const char *const others[] = {".usd", ".usda",  ".usdc", ".usdz", ".obj",
+                                         ".fbx", ".blend", ".abc",  ".stl",  ".ply"};
     char suffix[16];
     path_suffix(path, suffix);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)

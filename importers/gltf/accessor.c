@@ -26,7 +26,7 @@ static size_t column_bytes(const gltf_accessor *a) {
 static bool check_range(const gltf_reader *r, int view, size_t offset, size_t count, size_t bytes, size_t stride,
                         const kiln_where *where) {
     kiln_where view_where = where_key(where, "bufferView");
-    if (!check_index(r, view, r->document.view_count, false, "buffer view", &view_where)) return false;
+    if (!gltf_check_index(r, view, r->document.view_count, false, "buffer view", &view_where)) return false;
     size_t length = r->document.views[view].length, span;
     bool fits = size_mul(count - 1, stride, &span) && size_add(span, bytes, &span) && size_add(span, offset, &span) &&
                 span <= length;
@@ -70,7 +70,7 @@ static bool check_accessor(const gltf_reader *r, const gltf_accessor *a, const k
         return report_error(r->report, KILN_CODE_RANGE, where, repair, "%d is no component type", a->component_type);
     if (a->count < 1) return report_error(r->report, KILN_CODE_RANGE, where, repair, "the accessor has no elements");
     kiln_where view = where_key(where, "bufferView");
-    if (!check_index(r, a->view, r->document.view_count, true, "buffer view", &view)) return false;
+    if (!gltf_check_index(r, a->view, r->document.view_count, true, "buffer view", &view)) return false;
     size_t element = column_bytes(a) * a->columns, stride = stride_of(r, a);
     if (stride < element)
         return report_error(r->report, KILN_CODE_RANGE, where, repair,

@@ -83,7 +83,7 @@ static bool load(gltf_reader *r, size_t index) {
         if (!buffer->blob) return false;
         buffer->data = blob_bytes(buffer->blob)->data;
         size = blob_bytes(buffer->blob)->size;
-    } else if (index == 0 && r->container.binary) { /* section 4.4.3: the first buffer is the binary chunk */
+    } else if (index == 0 && r->container.binary) { /* section 3.6.1.2: the first buffer is the binary chunk */
         buffer->blob = blob_share(r->bytes);
         buffer->data = r->container.binary;
         size = r->container.binary_size;

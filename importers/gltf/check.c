@@ -4,24 +4,24 @@
 
 static const char repair[] = "repair the file in the tool that wrote it";
 
-bool check_index(const gltf_reader *r, int index, size_t count, bool none_allowed, const char *noun,
-                 const kiln_where *where) {
+bool gltf_check_index(const gltf_reader *r, int index, size_t count, bool none_allowed, const char *noun,
+                      const kiln_where *where) {
     if (index < 0 ? none_allowed && index == -1 : (size_t)index < count) return true;
     return report_error(r->report, KILN_CODE_REFERENCE, where, repair, "%s %d does not exist (the file has %zu)", noun,
                         index, count);
 }
 
-bool check_key(const gltf_reader *r, int index, size_t count, const char *noun, const kiln_where *object,
-               const char *key) {
+bool gltf_check_key(const gltf_reader *r, int index, size_t count, const char *noun, const kiln_where *object,
+                    const char *key) {
     kiln_where where = where_key(object, key);
-    return check_index(r, index, count, true, noun, &where);
+    return gltf_check_index(r, index, count, true, noun, &where);
 }
 
 static bool check_list(const gltf_reader *r, gltf_indices list, size_t count, const char *noun, const kiln_where *object,
                        const char *key) {
     for (size_t i = 0; i < list.count; i++) {
         kiln_where where = where_item(object, key, i);
-        if (!check_index(r, list.items[i], count, false, noun, &where)) return false;
+        if (!gltf_check_index(r, list.items[i], count, false, noun, &where)) return false;
     }
     return true;
 }
@@ -31,21 +31,19 @@ static bool check_views(const gltf_reader *r) {
         const gltf_view *v = &r->document.views[i];
         kiln_where where = where_item(&r->file, "bufferViews", i);
         kiln_where buffer = where_key(&where, "buffer");
-        if (!check_index(r, v->buffer, r->envelope.buffers.count, false, "buffer", &buffer)) return false;
+        if (!gltf_check_index(r, v->buffer, r->envelope.buffers.count, false, "buffer", &buffer)) return false;
         size_t size = (size_t)r->envelope.buffers.items[v->buffer].byte_length;
         if (v->offset > size || v->length > size - v->offset)
             return report_error(r->report, KILN_CODE_RANGE, &where, repair,
                                 "%zu bytes from %zu on reach beyond the %zu of buffer %d", v->length, v->offset, size,
                                 v->buffer);
-        if (v->stride != 0 && v->stride < 4)
-            return report_error(r->report, KILN_CODE_RANGE, &where, repair, "a byteStride of %zu (4 to 252)", v->stride);
     }
     return true;
 }
 
 static bool check_attributes(const gltf_reader *r, gltf_attributes list, const kiln_where *where) {
     for (size_t i = 0; i < list.count; i++)
-        if (!check_key(r, list.items[i].accessor, r->document.accessor_count, "accessor", where, list.items[i].name))
+        if (!gltf_check_key(r, list.items[i].accessor, r->document.accessor_count, "accessor", where, list.items[i].name))
             return false;
     return true;
 }
@@ -58,8 +56,8 @@ static bool check_primitive(const gltf_reader *r, const gltf_primitive *p, const
         return report_error(r->report, KILN_CODE_RANGE, &mode, repair, "%d is no primitive mode (0 to 6)", p->mode);
     }
     if (!check_attributes(r, p->attributes, &attributes) ||
-        !check_key(r, p->indices, d->accessor_count, "accessor", where, "indices") ||
-        !check_key(r, p->material, d->material_count, "material", where, "material"))
+        !gltf_check_key(r, p->indices, d->accessor_count, "accessor", where, "indices") ||
+        !gltf_check_key(r, p->material, d->material_count, "material", where, "material"))
         return false;
     for (size_t t = 0; t < p->target_count; t++) {
         kiln_where target = where_item(where, "targets", t);
@@ -83,14 +81,14 @@ static bool check_textures(const gltf_reader *r) {
     const gltf_document *d = &r->document;
     for (size_t i = 0; i < d->texture_count; i++) {
         kiln_where where = where_item(&r->file, "textures", i);
-        if (!check_key(r, d->textures[i].sampler, d->sampler_count, "sampler", &where, "sampler") ||
-            !check_key(r, d->textures[i].source, r->envelope.images.count, "image", &where, "source"))
+        if (!gltf_check_key(r, d->textures[i].sampler, d->sampler_count, "sampler", &where, "sampler") ||
+            !gltf_check_key(r, d->textures[i].source, r->envelope.images.count, "image", &where, "source"))
             return false;
     }
     for (size_t i = 0; i < r->envelope.images.count; i++) {
         const gltf_source *image = &r->envelope.images.items[i];
         kiln_where where = where_item(&r->file, "images", i);
-        if (!check_key(r, image->buffer_view, d->view_count, "buffer view", &where, "bufferView")) return false;
+        if (!gltf_check_key(r, image->buffer_view, d->view_count, "buffer view", &where, "bufferView")) return false;
         if (image->uri.at && image->buffer_view >= 0)
             return report_error(r->report, KILN_CODE_SYNTAX, &where, repair, "an image with both uri and bufferView");
     }
@@ -103,8 +101,8 @@ static bool check_skins(const gltf_reader *r) {
         const gltf_skin *s = &d->skins[i];
         kiln_where where = where_item(&r->file, "skins", i);
         if (!check_list(r, s->joints, d->node_count, "node", &where, "joints") ||
-            !check_key(r, s->skeleton, d->node_count, "node", &where, "skeleton") ||
-            !check_key(r, s->inverse_bind_matrices, d->accessor_count, "accessor", &where, "inverseBindMatrices"))
+            !gltf_check_key(r, s->skeleton, d->node_count, "node", &where, "skeleton") ||
+            !gltf_check_key(r, s->inverse_bind_matrices, d->accessor_count, "accessor", &where, "inverseBindMatrices"))
             return false;
     }
     return true;
@@ -114,14 +112,14 @@ static bool check_animation(const gltf_reader *r, const gltf_animation *a, const
     const gltf_document *d = &r->document;
     for (size_t i = 0; i < a->channel_count; i++) {
         kiln_where channel = where_item(where, "channels", i), target = where_key(&channel, "target");
-        if (!check_key(r, a->channels[i].sampler, a->sampler_count, "sampler", &channel, "sampler") ||
-            !check_key(r, a->channels[i].node, d->node_count, "node", &target, "node"))
+        if (!gltf_check_key(r, a->channels[i].sampler, a->sampler_count, "sampler", &channel, "sampler") ||
+            !gltf_check_key(r, a->channels[i].node, d->node_count, "node", &target, "node"))
             return false;
     }
     for (size_t i = 0; i < a->sampler_count; i++) {
         kiln_where sampler = where_item(where, "samplers", i);
-        if (!check_key(r, a->samplers[i].input, d->accessor_count, "accessor", &sampler, "input") ||
-            !check_key(r, a->samplers[i].output, d->accessor_count, "accessor", &sampler, "output"))
+        if (!gltf_check_key(r, a->samplers[i].input, d->accessor_count, "accessor", &sampler, "input") ||
+            !gltf_check_key(r, a->samplers[i].output, d->accessor_count, "accessor", &sampler, "output"))
             return false;
     }
     return true;
@@ -135,7 +133,7 @@ static bool check_animations(const gltf_reader *r) {
     return true;
 }
 
-bool check_document(gltf_reader *r) {
-    return check_views(r) && accessors_check(r) && check_meshes(r) && check_textures(r) && check_nodes(r) &&
+bool gltf_check_document(gltf_reader *r) {
+    return check_views(r) && accessors_check(r) && check_meshes(r) && check_textures(r) && gltf_check_nodes(r) &&
            check_skins(r) && check_animations(r);
 }

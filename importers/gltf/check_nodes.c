@@ -4,9 +4,9 @@ static const char repair[] = "repair the file in the tool that wrote it";
 
 static bool check_node(const gltf_reader *r, const gltf_node *n, const kiln_where *where) {
     const gltf_document *d = &r->document;
-    return check_key(r, n->mesh, d->mesh_count, "mesh", where, "mesh") &&
-           check_key(r, n->skin, d->skin_count, "skin", where, "skin") &&
-           check_key(r, n->camera, d->camera_count, "camera", where, "camera");
+    return gltf_check_key(r, n->mesh, d->mesh_count, "mesh", where, "mesh") &&
+           gltf_check_key(r, n->skin, d->skin_count, "skin", where, "skin") &&
+           gltf_check_key(r, n->camera, d->camera_count, "camera", where, "camera");
 }
 
 /* Every node has one parent at most (glTF 2.0, section 3.5.2: the hierarchy is a set of disjoint strict trees). */
@@ -18,11 +18,11 @@ static bool find_parents(const gltf_reader *r, int *parents) {
         kiln_where node = where_item(&r->file, "nodes", i);
         for (size_t c = 0; c < children.count; c++) {
             kiln_where where = where_item(&node, "children", c);
-            if (!check_index(r, children.items[c], d->node_count, false, "node", &where)) return false;
+            if (!gltf_check_index(r, children.items[c], d->node_count, false, "node", &where)) return false;
             int *parent = &parents[children.items[c]];
             if (*parent >= 0)
-                return report_error(r->report, KILN_CODE_REFERENCE, &where, repair, "node %d is a child of node %d already",
-                                    children.items[c], *parent);
+                return report_error(r->report, KILN_CODE_REFERENCE, &where, repair,
+                                    "node %d is a child of node %d already", children.items[c], *parent);
             *parent = (int)i;
         }
     }
@@ -54,7 +54,7 @@ static bool check_scenes(const gltf_reader *r, const int *parents, uint32_t *mar
         for (size_t i = 0; i < d->scenes[s].count; i++) {
             int node = d->scenes[s].items[i];
             kiln_where where = where_item(&scene, "nodes", i);
-            if (!check_index(r, node, d->node_count, false, "node", &where)) return false;
+            if (!gltf_check_index(r, node, d->node_count, false, "node", &where)) return false;
             if (parents[node] >= 0)
                 return report_error(r->report, KILN_CODE_REFERENCE, &where, repair,
                                     "node %d is a child of node %d, and cannot be a root too", node, parents[node]);
@@ -64,10 +64,10 @@ static bool check_scenes(const gltf_reader *r, const int *parents, uint32_t *mar
         }
     }
     kiln_where where = where_key(&r->file, "scene");
-    return check_index(r, d->scene, d->scene_count, true, "scene", &where);
+    return gltf_check_index(r, d->scene, d->scene_count, true, "scene", &where);
 }
 
-bool check_nodes(gltf_reader *r) {
+bool gltf_check_nodes(gltf_reader *r) {
     size_t count = r->document.node_count;
     for (size_t i = 0; i < count; i++) {
         kiln_where where = where_item(&r->file, "nodes", i);

@@ -29,7 +29,8 @@ bool parts_compact(mesh_parts *m, uint32_t *vertices, size_t count) {
             m->primvars[i].value_count = (uint32_t)left;
         }
         for (size_t c = 0; c < 3 * m->face_count; c++) m->corners[c] = numbers[m->corners[c]];
-        for (size_t i = 0; i < count; i++) vertices[i] = vertices[i] < m->vertex_count ? numbers[vertices[i]] : UINT32_MAX;
+        for (size_t i = 0; i < count; i++)
+            vertices[i] = vertices[i] < m->vertex_count ? numbers[vertices[i]] : UINT32_MAX;
         m->vertex_count = left;
     }
     free(numbers);

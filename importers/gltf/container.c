@@ -48,7 +48,7 @@ static bool open_chunk(gltf_container *c, size_t index, uint32_t type, const uns
     }
     if (type == CHUNK_JSON || (type == CHUNK_BINARY && c->binary))
         return report_error(report, KILN_CODE_FILE_FORMAT, where, again, "a second chunk of this type");
-    if (type != CHUNK_BINARY) return true; /* section 4.4.1: chunks of unknown types are ignored */
+    if (type != CHUNK_BINARY) return true; /* section 4.4.3.1: chunks of unknown types are ignored */
     c->binary = data;
     c->binary_size = size;
     return true;

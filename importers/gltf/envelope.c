@@ -15,8 +15,8 @@ static unsigned version_number(const char *version) {
     return end == minor_text || *end || minor > 999 ? 0 : (unsigned)(1000 * major + minor);
 }
 
-static bool read_version(json_value asset, const char *key, unsigned *version, kiln_arena *arena, const kiln_where *where,
-                         kiln_report *report) {
+static bool read_version(json_value asset, const char *key, unsigned *version, kiln_arena *arena,
+                         const kiln_where *where, kiln_report *report) {
     json_value value;
     *version = 0;
     if (!json_member(asset, key, &value)) return true;
@@ -91,7 +91,8 @@ bool envelope_read(json_value root, gltf_envelope *envelope, kiln_arena *arena, 
             if (!json_is(key, rows[i].key)) continue;
             kiln_where where = where_key(file, rows[i].key);
             if (rows[i].value->at)
-                return report_error(report, KILN_CODE_SYNTAX, &where, "export the file again", "the property is there twice");
+                return report_error(report, KILN_CODE_SYNTAX, &where, "export the file again",
+                                    "the property is there twice");
             *rows[i].value = value;
         }
     return (!buffers.at || read_sources(buffers, &envelope->buffers, arena, report)) &&

@@ -20,7 +20,8 @@ static void triangle_corners(int mode, size_t t, size_t corner[3]) {
     }
 }
 
-static bool check_indices(const mesh_parts *m, const mesh_part *part, const uint32_t *indices, const kiln_where *where) {
+static bool check_indices(const mesh_parts *m, const mesh_part *part, const uint32_t *indices,
+                          const kiln_where *where) {
     int type = m->r->document.accessors[part->primitive->indices].component_type;
     uint32_t restart = type == GLTF_UNSIGNED_BYTE ? UINT8_MAX : type == GLTF_UNSIGNED_SHORT ? UINT16_MAX : UINT32_MAX;
     for (size_t i = 0; i < part->corner_count; i++) {
@@ -41,7 +42,8 @@ static uint32_t *read_indices(mesh_parts *m, const mesh_part *part) {
     uint32_t *indices = array_alloc(part->corner_count, sizeof *indices);
     bool ok = indices || report_no_memory(m->r->report, "reading a mesh");
     if (ok && part->primitive->indices >= 0)
-        ok = accessor_integers(m->r, part->primitive->indices, indices, &where) && check_indices(m, part, indices, &where);
+        ok = accessor_integers(m->r, part->primitive->indices, indices, &where) &&
+             check_indices(m, part, indices, &where);
     else
         for (size_t i = 0; ok && i < part->corner_count; i++) indices[i] = (uint32_t)i;
     m->r->budget += part->corner_count * sizeof(uint32_t); /* it does not live long */
@@ -89,7 +91,8 @@ bool parts_read_faces(mesh_parts *m) {
     size_t triangles = 0;
     for (size_t i = 0; i < m->count; i++) triangles += triangle_count(&m->parts[i]);
     if (triangles > UINT32_MAX / 3)
-        return report_error(m->r->report, KILN_CODE_LIMIT, &m->where, "split the mesh", "%zu triangles in one mesh", triangles);
+        return report_error(m->r->report, KILN_CODE_LIMIT, &m->where, "split the mesh", "%zu triangles in one mesh",
+                            triangles);
     m->corners = parts_array(m, triangles, 3 * sizeof *m->corners);
     if (!m->corners) return false;
     for (size_t i = 0; i < m->count; i++)

@@ -82,7 +82,8 @@ static void note_motion(const gltf_reader *r) {
 }
 
 static bool build_scene(gltf_reader *r) {
-    return make_tables(r) && check_document(r) && place_nodes(r) && add_materials(r) && add_meshes(r) && add_instances(r);
+    return make_tables(r) && gltf_check_document(r) && gltf_place_nodes(r) && gltf_add_materials(r) &&
+           gltf_add_meshes(r) && gltf_add_instances(r);
 }
 
 static bool read_all(gltf_reader *r) {
@@ -104,7 +105,8 @@ static bool read_all(gltf_reader *r) {
 static bool import_bytes(gltf_reader *r, kiln_bytes *bytes) {
     size_t size = bytes->size;
     r->bytes = blob_create(bytes);
-    bool done = r->bytes ? reader_reserve(r, size, &r->file) && read_all(r) : report_no_memory(r->report, "reading a file");
+    bool done = r->bytes ? reader_reserve(r, size, &r->file) && read_all(r)
+                         : report_no_memory(r->report, "reading a file");
     buffers_free(r);
     blob_release(r->bytes);
     arena_free(&r->arena);
@@ -117,7 +119,8 @@ static uint64_t budget_of(const kiln_import_options *options) {
 
 bool gltf_import_memory(const char *name, const void *bytes, size_t size, const char *folder,
                         const kiln_import_options *options, kiln_scene *scene, kiln_report *report) {
-    gltf_reader r = {.folder = folder, .file = where_root(name), .report = report, .budget = budget_of(options), .scene = scene};
+    gltf_reader r = {.folder = folder, .file = where_root(name), .report = report,
+                     .budget = budget_of(options), .scene = scene};
     kiln_bytes copy = {malloc(size + 1), size};
     if (!copy.data) return report_no_memory(report, "reading a glTF file");
     memcpy(copy.data, bytes, size);

@@ -61,7 +61,7 @@ static const char *name_of(gltf_reader *r, const gltf_source *source) {
     return uri && strncmp(uri, "data:", 5) != 0 ? path_base(uri) : "";
 }
 
-bool add_image(gltf_reader *r, int image, kiln_id *id) {
+bool gltf_add_image(gltf_reader *r, int image, kiln_id *id) {
     if (r->images[image]) {
         *id = r->images[image];
         return true;

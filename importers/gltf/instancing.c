@@ -24,11 +24,11 @@ static bool read_attribute(gltf_reader *r, const gltf_value *attributes, const c
     *values = NULL;
     if (!value_index(attributes, name, &accessor, list, r->report)) return false;
     if (accessor < 0) return true;
-    if (!check_index(r, accessor, r->document.accessor_count, false, "accessor", &where)) return false;
+    if (!gltf_check_index(r, accessor, r->document.accessor_count, false, "accessor", &where)) return false;
     const gltf_accessor *a = &r->document.accessors[accessor];
     if (a->columns != 1 || a->rows != width)
-        return report_error(r->report, KILN_CODE_RANGE, &where, NULL, "accessor %d must hold vectors of %u numbers", accessor,
-                            width);
+        return report_error(r->report, KILN_CODE_RANGE, &where, NULL, "accessor %d must hold vectors of %u numbers",
+                            accessor, width);
     if (*count && a->count != *count)
         return report_error(r->report, KILN_CODE_RANGE, &where, NULL, "%zu values for %zu instances", a->count, *count);
     *count = a->count;
@@ -60,7 +60,7 @@ static bool add_copies(gltf_reader *r, const gltf_placement *p, const gltf_value
     return true;
 }
 
-bool add_instances(gltf_reader *r) {
+bool gltf_add_instances(gltf_reader *r) {
     for (size_t i = 0; i < r->placement_count; i++) {
         const gltf_placement *p = &r->placements[i];
         const gltf_value *instancing = value_member(&r->document.nodes[p->node].extensions, "EXT_mesh_gpu_instancing");

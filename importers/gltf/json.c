@@ -160,7 +160,8 @@ static bool check_value(scanner *s, int depth) {
         if (!check_value(s, depth + 1)) return false;
         skip_space(s);
         if (accept(s, close)) return true;
-        if (!accept(s, ',')) return refuse_syntax(s, c == '{' ? "',' or '}' is expected here" : "',' or ']' is expected here");
+        if (!accept(s, ','))
+            return refuse_syntax(s, c == '{' ? "',' or '}' is expected here" : "',' or ']' is expected here");
     }
 }
 

@@ -15,8 +15,9 @@ json_kind json_kind_of(const char *at) {
 }
 
 const char *json_kind_name(json_kind kind) {
-    static const char *const names[] = {[JSON_NULL] = "null",       [JSON_BOOL] = "a boolean", [JSON_NUMBER] = "a number",
-                                        [JSON_STRING] = "a string", [JSON_ARRAY] = "an array", [JSON_OBJECT] = "an object"};
+    static const char *const names[] = {[JSON_NULL] = "null",        [JSON_BOOL] = "a boolean",
+                                        [JSON_NUMBER] = "a number",  [JSON_STRING] = "a string",
+                                        [JSON_ARRAY] = "an array",   [JSON_OBJECT] = "an object"};
     return names[kind];
 }
 

@@ -23,15 +23,16 @@ static bool read_alpha(gltf_reader *r, const gltf_material *m, kiln_material *ou
 }
 
 /* Section 3.9.2 (metallic-roughness): metalness in B, roughness in G; alpha is the base colour's. */
-static bool read_metallic_roughness(gltf_reader *r, const gltf_material *m, kiln_material *out, const kiln_where *material) {
+static bool read_metallic_roughness(gltf_reader *r, const gltf_material *m, kiln_material *out,
+                                    const kiln_where *material) {
     kiln_where pbr = where_key(material, "pbrMetallicRoughness"), color = where_key(&pbr, "baseColorTexture"),
                surface = where_key(&pbr, "metallicRoughnessTexture");
     copy_color(out->base_color.value, m->base_color);
     out->opacity.value = (float)m->base_color[3];
     out->metallic.value = (float)m->metallic;
     out->roughness.value = (float)m->roughness;
-    if (!texture_read(r, &m->base_color_texture, KILN_TRANSFER_SRGB, 0, &out->base_color.texture, &color) ||
-        !texture_read(r, &m->metallic_roughness_texture, KILN_TRANSFER_DATA, 2, &out->metallic.texture, &surface))
+    if (!gltf_read_texture(r, &m->base_color_texture, KILN_TRANSFER_SRGB, 0, &out->base_color.texture, &color) ||
+        !gltf_read_texture(r, &m->metallic_roughness_texture, KILN_TRANSFER_DATA, 2, &out->metallic.texture, &surface))
         return false;
     out->roughness.texture = out->metallic.texture;
     out->roughness.texture.channel = 1;
@@ -48,14 +49,15 @@ static bool read_maps(gltf_reader *r, const gltf_material *m, kiln_material *out
                occlusion = where_key(material, "occlusionTexture");
     out->normal.value = (float)m->normal_texture.factor;
     copy_color(out->emission.value, m->emissive);
-    return texture_read(r, &m->normal_texture, KILN_TRANSFER_DATA, 0, &out->normal.texture, &normal) &&
-           texture_read(r, &m->emissive_texture, KILN_TRANSFER_SRGB, 0, &out->emission.texture, &emissive) &&
-           check_key(r, m->occlusion_texture.texture, r->document.texture_count, "texture", &occlusion, "index");
+    return gltf_read_texture(r, &m->normal_texture, KILN_TRANSFER_DATA, 0, &out->normal.texture, &normal) &&
+           gltf_read_texture(r, &m->emissive_texture, KILN_TRANSFER_SRGB, 0, &out->emission.texture, &emissive) &&
+           gltf_check_key(r, m->occlusion_texture.texture, r->document.texture_count, "texture", &occlusion, "index");
 }
 
 /* Readers of one extension each; object is its value. */
 
-static bool read_emissive_strength(gltf_reader *r, const gltf_value *object, kiln_material *out, const kiln_where *where) {
+static bool read_emissive_strength(gltf_reader *r, const gltf_value *object, kiln_material *out,
+                                   const kiln_where *where) {
     float strength = 1;
     if (!value_float(object, "emissiveStrength", &strength, where, r->report)) return false;
     for (int k = 0; k < 3; k++) out->emission.value[k] *= strength;
@@ -69,21 +71,23 @@ static bool read_ior(gltf_reader *r, const gltf_value *object, kiln_material *ou
 static bool read_specular(gltf_reader *r, const gltf_value *object, kiln_material *out, const kiln_where *where) {
     return value_float(object, "specularFactor", &out->specular.value, where, r->report) &&
            value_floats(object, "specularColorFactor", 3, out->specular_color.value, where, r->report) &&
-           texture_read_member(r, object, "specularTexture", KILN_TRANSFER_DATA, 3, &out->specular.texture, where) &&
-           texture_read_member(r, object, "specularColorTexture", KILN_TRANSFER_SRGB, 0, &out->specular_color.texture, where);
+           gltf_read_texture_member(r, object, "specularTexture", KILN_TRANSFER_DATA, 3, &out->specular.texture, where) &&
+           gltf_read_texture_member(r, object, "specularColorTexture", KILN_TRANSFER_SRGB, 0, &out->specular_color.texture,
+                                    where);
 }
 
 static bool read_transmission(gltf_reader *r, const gltf_value *object, kiln_material *out, const kiln_where *where) {
     out->layers |= KILN_LAYER_TRANSMISSION;
     return value_float(object, "transmissionFactor", &out->transmission.value, where, r->report) &&
-           texture_read_member(r, object, "transmissionTexture", KILN_TRANSFER_DATA, 0, &out->transmission.texture, where);
+           gltf_read_texture_member(r, object, "transmissionTexture", KILN_TRANSFER_DATA, 0, &out->transmission.texture,
+                                    where);
 }
 
 static bool read_volume(gltf_reader *r, const gltf_value *object, kiln_material *out, const kiln_where *where) {
     out->layers |= KILN_LAYER_VOLUME;
     float distance = HUGE_VALF;
     if (!value_float(object, "thicknessFactor", &out->thickness.value, where, r->report) ||
-        !texture_read_member(r, object, "thicknessTexture", KILN_TRANSFER_DATA, 1, &out->thickness.texture, where) ||
+        !gltf_read_texture_member(r, object, "thicknessTexture", KILN_TRANSFER_DATA, 1, &out->thickness.texture, where) ||
         !value_float(object, "attenuationDistance", &distance, where, r->report) ||
         !value_floats(object, "attenuationColor", 3, out->attenuation_color, where, r->report))
         return false;
@@ -134,7 +138,7 @@ static bool add_material(gltf_reader *r, size_t index) {
     return added;
 }
 
-bool add_materials(gltf_reader *r) {
+bool gltf_add_materials(gltf_reader *r) {
     for (size_t i = 0; i < r->document.material_count; i++)
         if (!add_material(r, i)) return false;
     return true;

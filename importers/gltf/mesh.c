@@ -28,7 +28,8 @@ static bool same_attributes(const mesh_part *a, const mesh_part *b) {
     const gltf_attributes *x = &a->primitive->attributes, *y = &b->primitive->attributes;
     if (x->count != y->count) return false;
     for (size_t i = 0; i < x->count; i++)
-        if (x->items[i].accessor != y->items[i].accessor || strcmp(x->items[i].name, y->items[i].name) != 0) return false;
+        if (x->items[i].accessor != y->items[i].accessor || strcmp(x->items[i].name, y->items[i].name) != 0)
+            return false;
     return true;
 }
 
@@ -70,8 +71,8 @@ static bool open_parts(mesh_parts *m) {
     for (size_t i = 0; i < m->mesh->primitive_count; i++) {
         open_part(m, i);
         if (m->vertex_count >= UINT32_MAX)
-            return report_error(m->r->report, KILN_CODE_LIMIT, &m->where, "split the mesh", "more than %u vertices in a mesh",
-                                UINT32_MAX);
+            return report_error(m->r->report, KILN_CODE_LIMIT, &m->where, "split the mesh",
+                                "more than %u vertices in a mesh", UINT32_MAX);
     }
     return true;
 }
@@ -115,17 +116,18 @@ static bool add_mesh(gltf_reader *r, size_t index, int asking_node) {
     mesh_parts m = {.r = r, .mesh = &r->document.meshes[index], .where = where_item(&r->file, "meshes", index)};
     uint32_t *tags;
     size_t tag_count;
-    bool done = open_parts(&m) && (m.count == 0 || (parts_read_faces(&m) && parts_read_primvars(&m) &&
-                                                    read_subdivision(&m, asking_node, &tags, &tag_count) &&
-                                                    parts_compact(&m, tags, tag_count) && add_to_scene(&m, &r->meshes[index])));
+    bool done = open_parts(&m);
+    if (done && m.count)
+        done = parts_read_faces(&m) && parts_read_primvars(&m) && read_subdivision(&m, asking_node, &tags, &tag_count) &&
+               parts_compact(&m, tags, tag_count) && add_to_scene(&m, &r->meshes[index]);
     arena_free(&m.arena);
     return done;
 }
 
-bool add_meshes(gltf_reader *r) {
+bool gltf_add_meshes(gltf_reader *r) {
     size_t count = r->document.mesh_count;
     bool *placed = reader_array(r, count, sizeof *placed, &r->file);
-    int *asking = placed ? reader_array(r, count, sizeof *asking, &r->file) : NULL; /* the first node that wants subdivision */
+    int *asking = placed ? reader_array(r, count, sizeof *asking, &r->file) : NULL; /* nodes that want subdivision */
     if (!asking) return false;
     for (size_t i = 0; i < count; i++) asking[i] = -1;
     for (size_t i = 0; i < r->placement_count; i++) {

@@ -14,9 +14,18 @@ static mat4 local_transform(const gltf_node *n) {
     if (n->rotation.count) {
         memcpy(q, n->rotation.items, sizeof q);
         double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-        for (int k = 0; k < 4; k++) q[k] = length > 0 ? q[k] / length : k == 3; /* no rotation rather than none at all */
+        for (int k = 0; k < 4; k++) q[k] = length > 0 ? q[k] / length : k == 3; /* of length 0: no rotation */
     }
     return mat4_trs(t, q, s);
+}
+
+/* Section 3.10.2: the scale of a camera's node is ignored. Mirroring and shear go too; what has no direction left stays
+ * for the scene to refuse. */
+static mat4 without_scale(const mat4 *m) {
+    dvec3 z = d3_normalize(d3_load(m->m + 8)), x = d3_load(m->m);
+    x = d3_normalize(d3_sub(x, d3_scale(z, d3_dot(x, z))));
+    dvec3 y = d3_cross(z, x);
+    return (mat4){{x.x, x.y, x.z, 0, y.x, y.y, y.z, 0, z.x, z.y, z.z, 0, m->m[12], m->m[13], m->m[14], 1}};
 }
 
 static bool add_camera(gltf_reader *r, const gltf_node *n, const mat4 *transform) {
@@ -34,7 +43,8 @@ static bool add_camera(gltf_reader *r, const gltf_node *n, const mat4 *transform
     }
     camera.znear = c->znear;
     camera.zfar = c->zfar;
-    memcpy(camera.transform, transform->m, sizeof camera.transform);
+    const mat4 frame = without_scale(transform);
+    memcpy(camera.transform, frame.m, sizeof camera.transform);
     kiln_where where = where_item(&r->file, "cameras", (size_t)n->camera);
     scene_locate(r->scene, &where);
     bool added = kiln_scene_add_camera(r->scene, &camera, NULL, r->report);
@@ -64,8 +74,8 @@ static bool read_kind(const gltf_reader *r, const gltf_light *l, kiln_light *lig
             return true;
         }
     kiln_where here = where_key(where, "type");
-    return report_error(r->report, KILN_CODE_RANGE, &here, "use point, spot or directional", "\"%.40s\" is no kind of light",
-                        l->type);
+    return report_error(r->report, KILN_CODE_RANGE, &here, "use point, spot or directional",
+                        "\"%.40s\" is no kind of light", l->type);
 }
 
 static bool add_light(gltf_reader *r, int index, const gltf_node *n, const mat4 *transform) {
@@ -107,7 +117,7 @@ static bool enter_node(gltf_reader *r, int index, const mat4 *transform, bool *v
     bool shown = true;
     if (!value_bool(value_member(&n->extensions, "KHR_node_visibility"), "visible", &shown, &visibility, r->report) ||
         !value_index(value_member(&n->extensions, "KHR_lights_punctual"), "light", &light, &punctual, r->report) ||
-        !check_key(r, light, d->light_count, "light", &punctual, "light"))
+        !gltf_check_key(r, light, d->light_count, "light", &punctual, "light"))
         return false;
     if (n->camera >= 0 && !add_camera(r, n, transform)) return false;
     *visible &= shown;
@@ -132,24 +142,26 @@ static bool walk(gltf_reader *r, const int *roots, size_t root_count, visit *sta
 }
 
 /* Without any scene, all nodes that are nobody's children. */
-static gltf_indices find_roots(gltf_reader *r) {
+static bool find_roots(gltf_reader *r, gltf_indices *found) {
     const gltf_document *d = &r->document;
     bool *is_child = reader_array(r, d->node_count, sizeof *is_child, &r->file);
     int *roots = is_child ? reader_array(r, d->node_count, sizeof *roots, &r->file) : NULL;
-    gltf_indices found = {roots, 0};
-    if (!roots) return found;
+    if (!roots) return false;
+    *found = (gltf_indices){roots, 0};
     for (size_t i = 0; i < d->node_count; i++)
         for (size_t c = 0; c < d->nodes[i].children.count; c++) is_child[d->nodes[i].children.items[c]] = true;
     for (size_t i = 0; i < d->node_count; i++)
-        if (!is_child[i]) roots[found.count++] = (int)i;
-    return found;
+        if (!is_child[i]) roots[found->count++] = (int)i;
+    return true;
 }
 
-bool place_nodes(gltf_reader *r) {
+bool gltf_place_nodes(gltf_reader *r) {
     const gltf_document *d = &r->document;
     r->placements = reader_array(r, d->node_count, sizeof *r->placements, &r->file);
     visit *stack = r->placements ? reader_array(r, d->node_count, sizeof *stack, &r->file) : NULL;
     if (!stack) return false;
-    gltf_indices roots = d->scene_count ? d->scenes[d->scene < 0 ? 0 : d->scene] : find_roots(r);
-    return (roots.items || !roots.count) && walk(r, roots.items, roots.count, stack);
+    gltf_indices roots;
+    if (d->scene_count) roots = d->scenes[d->scene < 0 ? 0 : d->scene];
+    else if (!find_roots(r, &roots)) return false;
+    return walk(r, roots.items, roots.count, stack);
 }

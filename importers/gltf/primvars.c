@@ -18,11 +18,15 @@ static bool check_shape(const mesh_parts *m, const mesh_part *part, int accessor
 }
 
 /* Integers that nobody marked as normalised cannot be meant as colours of up to 65,535. */
-static void normalize_colors(const mesh_parts *m, const mesh_part *part, int accessor, float *out, const kiln_where *where) {
+static void normalize_colors(const mesh_parts *m, const mesh_part *part, int accessor, float *out,
+                             const kiln_where *where) {
     const gltf_accessor *a = &m->r->document.accessors[accessor];
     if (a->normalized || a->component_type == GLTF_FLOAT) return;
-    float largest = a->component_type == GLTF_UNSIGNED_SHORT ? 65535 : a->component_type == GLTF_UNSIGNED_BYTE ? 255 : 1;
-    report_warning(m->r->report, KILN_CODE_RANGE, where, NULL, "integer colours that are not normalized: they are read as if");
+    float largest = a->component_type == GLTF_UNSIGNED_SHORT  ? 65535
+                    : a->component_type == GLTF_UNSIGNED_BYTE ? 255
+                                                              : 1;
+    report_warning(m->r->report, KILN_CODE_RANGE, where, NULL,
+                   "integer colours that are not normalized: they are read as if they were");
     for (size_t i = 0; i < part->vertex_count; i++)
         for (uint32_t k = 0; k < a->rows; k++) out[4 * i + k] /= largest;
 }

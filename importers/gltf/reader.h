@@ -43,23 +43,25 @@ bool reader_reserve(gltf_reader *, uint64_t bytes, const kiln_where *);
 void *reader_array(gltf_reader *, size_t count, size_t size, const kiln_where *);
 
 /* check.c, check_nodes.c: all indices lead somewhere, all ranges lie in their buffers, the nodes form trees. */
-bool check_document(gltf_reader *);
-bool check_nodes(gltf_reader *);
+bool gltf_check_document(gltf_reader *);
+bool gltf_check_nodes(gltf_reader *);
 /* An index of the file, −1 standing for none: "texture 12 does not exist (the file has 3)". */
-bool check_index(const gltf_reader *, int index, size_t count, bool none_allowed, const char *noun, const kiln_where *);
+bool gltf_check_index(const gltf_reader *, int index, size_t count, bool none_allowed, const char *noun,
+                      const kiln_where *);
 /* The same for the property key of an object; −1 is fine. */
-bool check_key(const gltf_reader *, int index, size_t count, const char *noun, const kiln_where *object, const char *key);
+bool gltf_check_key(const gltf_reader *, int index, size_t count, const char *noun, const kiln_where *object,
+                    const char *key);
 
 /* material.c: adds all materials, and the images that they use. */
-bool add_materials(gltf_reader *);
+bool gltf_add_materials(gltf_reader *);
 /* image.c: the scene's handle of an image of the file, added on first use. */
-bool add_image(gltf_reader *, int image, kiln_id *id);
+bool gltf_add_image(gltf_reader *, int image, kiln_id *id);
 
 /* node.c: walks the scene; finds the placements of meshes, adds cameras and lights. */
-bool place_nodes(gltf_reader *);
+bool gltf_place_nodes(gltf_reader *);
 /* mesh.c: adds the meshes that have placements. */
-bool add_meshes(gltf_reader *);
+bool gltf_add_meshes(gltf_reader *);
 /* instancing.c: adds the instances, those of EXT_mesh_gpu_instancing too. */
-bool add_instances(gltf_reader *);
+bool gltf_add_instances(gltf_reader *);
 
 #endif

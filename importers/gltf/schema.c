@@ -33,16 +33,26 @@ static bool check_integer(const checker *c, json_value value, uint64_t limit, co
     if (!json_integer(value, &integer))
         return report_error(c->report, KILN_CODE_RANGE, where, remedy, "a non-negative integer is expected, not %.*s",
                             shown, value.at);
-    return integer <= limit || report_error(c->report, KILN_CODE_RANGE, where, remedy, "%.*s is too large", shown, value.at);
+    return integer <= limit ||
+           report_error(c->report, KILN_CODE_RANGE, where, remedy, "%.*s is too large", shown, value.at);
 }
 
-/* tinygltf looks the accessor of indices up itself. */
+/* What tinygltf checks itself, and would refuse without saying where. */
 static bool check_index(const checker *c, json_value value, const schema_row *row, const kiln_where *where) {
     uint64_t index;
     if (!check_integer(c, value, INT32_MAX, where)) return false;
-    if (strcmp(row->key, "indices") != 0 || !json_integer(value, &index) || index < c->accessor_count) return true;
-    return report_error(c->report, KILN_CODE_REFERENCE, where, remedy, "accessor %llu does not exist (the file has %zu)",
-                        (unsigned long long)index, c->accessor_count);
+    json_integer(value, &index);
+    if (strcmp(row->key, "indices") == 0 && index >= c->accessor_count)
+        return report_error(c->report, KILN_CODE_REFERENCE, where, remedy,
+                            "accessor %llu does not exist (the file has %zu)", (unsigned long long)index,
+                            c->accessor_count);
+    if (strcmp(row->key, "byteStride") == 0 && (index > 252 || index % 4))
+        return report_error(c->report, KILN_CODE_RANGE, where, remedy, "%llu is no multiple of 4 from 4 to 252",
+                            (unsigned long long)index);
+    if (strcmp(row->key, "componentType") == 0 && (index < 5120 || index > 5126))
+        return report_error(c->report, KILN_CODE_RANGE, where, remedy, "%llu is no component type",
+                            (unsigned long long)index);
+    return true;
 }
 
 /* The members of attributes are indices, those of extensions objects. */
@@ -130,30 +140,65 @@ static bool check_members(const checker *c, json_value object, const char *const
     return true;
 }
 
-/* KHR_lights_punctual: a light has a type, a spot its cone. */
-static bool check_lights(const checker *c, json_value root, const kiln_where *file) {
-    json_value extensions, punctual, lights, light, type, spot;
-    if (!json_member(root, "extensions", &extensions) || !json_member(extensions, "KHR_lights_punctual", &punctual) ||
-        !json_member(punctual, "lights", &lights))
-        return true;
-    kiln_where list = where_key(file, "extensions"), extension = where_key(&list, "KHR_lights_punctual");
-    json_cursor cursor = json_open(lights);
-    for (size_t i = 0; json_next(&cursor, NULL, &light); i++) {
-        kiln_where where = where_item(&extension, "lights", i);
-        if (!json_member(light, "type", &type))
-            return report_error(c->report, KILN_CODE_SYNTAX, &where, remedy, "type is missing");
-        if (json_is(type, "spot") && !(json_member(light, "spot", &spot) && json_kind_of(spot.at) == JSON_OBJECT))
-            return report_error(c->report, KILN_CODE_SYNTAX, &where, remedy, "a spot light without a spot object");
+/* The type of each object in an array is one of the names. */
+static bool check_types(const checker *c, json_value root, const char *key, const char *const *names,
+                        const kiln_where *file) {
+    json_value array, object, type;
+    if (!json_member(root, key, &array)) return true;
+    json_cursor cursor = json_open(array);
+    for (size_t i = 0; json_next(&cursor, NULL, &object); i++) {
+        bool known = false;
+        if (!json_member(object, "type", &type)) continue;
+        for (size_t k = 0; names[k]; k++) known |= json_is(type, names[k]);
+        kiln_where item = where_item(file, key, i), where = where_key(&item, "type");
+        int shown = type.end - type.at > 40 ? 40 : (int)(type.end - type.at);
+        if (!known)
+            return report_error(c->report, KILN_CODE_RANGE, &where, remedy, "%.*s is no known type", shown, type.at);
     }
     return true;
 }
 
+/* An object of the type kind has a member object of that name: cameras, and KHR_lights_punctual's spots. */
+static bool check_described(const checker *c, json_value array, const char *key, const char *kind,
+                            const kiln_where *parent) {
+    json_value object, type, description;
+    json_cursor cursor = json_open(array);
+    for (size_t i = 0; json_next(&cursor, NULL, &object); i++) {
+        kiln_where where = where_item(parent, key, i);
+        if (!json_member(object, "type", &type))
+            return report_error(c->report, KILN_CODE_SYNTAX, &where, remedy, "type is missing");
+        bool described = json_member(object, kind, &description) && json_kind_of(description.at) == JSON_OBJECT;
+        if (json_is(type, kind) && !described)
+            return report_error(c->report, KILN_CODE_SYNTAX, &where, remedy, "%s is missing", kind);
+    }
+    return true;
+}
+
+static bool check_lights(const checker *c, json_value root, const kiln_where *file) {
+    json_value extensions, punctual, lights;
+    if (!json_member(root, "extensions", &extensions) || !json_member(extensions, "KHR_lights_punctual", &punctual) ||
+        !json_member(punctual, "lights", &lights))
+        return true;
+    kiln_where list = where_key(file, "extensions"), extension = where_key(&list, "KHR_lights_punctual");
+    return check_described(c, lights, "lights", "spot", &extension);
+}
+
+static bool check_cameras(const checker *c, json_value root, const kiln_where *file) {
+    static const char *const types[] = {"perspective", "orthographic", NULL};
+    json_value cameras;
+    return !json_member(root, "cameras", &cameras) ||
+           (check_types(c, root, "cameras", types, file) && check_described(c, cameras, "cameras", types[0], file) &&
+            check_described(c, cameras, "cameras", types[1], file));
+}
+
 bool schema_check(json_value root, const kiln_where *file, kiln_report *report) {
-    static const char *const required[3] = {"asset"};
+    static const char *const required[3] = {"asset"},
+                             *const types[] = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4", NULL};
     checker c = {0, report};
     json_value accessors, value;
     if (json_kind_of(root.at) != JSON_OBJECT) return mismatch(&c, "an object", root.at, file);
     if (json_member(root, "accessors", &accessors))
         for (json_cursor cursor = json_open(accessors); json_next(&cursor, NULL, &value);) c.accessor_count++;
-    return check_members(&c, root, required, file) && check_lights(&c, root, file);
+    return check_members(&c, root, required, file) && check_types(&c, root, "accessors", types, file) &&
+           check_cameras(&c, root, file) && check_lights(&c, root, file);
 }

@@ -66,7 +66,7 @@ const schema_row schema_rows[] = {
     {"normalTexture", OBJECT, 0, {"index"}, 0},
     PLAIN("normalized", BOOL),
     {"occlusionTexture", OBJECT, 0, {"index"}, 0},
-    PLAIN("orthographic", OBJECT),
+    {"orthographic", OBJECT, 0, {"xmag", "ymag", "zfar"}, 0},
     PLAIN("output", INDEX),
     PLAIN("path", STRING),
     PLAIN("pbrMetallicRoughness", OBJECT),

@@ -20,16 +20,19 @@ struct store {
         if (!items) throw std::bad_alloc();
         return items;
     }
+    template <class T> const T *copy(const T *from, size_t count) {
+        return static_cast<const T *>(std::memcpy(array<T>(count), from, count * sizeof(T)));
+    }
     const char *string(const std::string &s) {
-        return s.empty() ? "" : static_cast<const char *>(std::memcpy(array<char>(s.size() + 1), s.c_str(), s.size() + 1));
+        return s.empty() ? "" : copy(s.c_str(), s.size() + 1);
     }
     gltf_numbers numbers(const std::vector<double> &v) {
         if (v.empty()) return {nullptr, 0};
-        return {static_cast<double *>(std::memcpy(array<double>(v.size()), v.data(), v.size() * sizeof(double))), v.size()};
+        return {copy(v.data(), v.size()), v.size()};
     }
     gltf_indices indices(const std::vector<int> &v) {
         if (v.empty()) return {nullptr, 0};
-        return {static_cast<int *>(std::memcpy(array<int>(v.size()), v.data(), v.size() * sizeof(int))), v.size()};
+        return {copy(v.data(), v.size()), v.size()};
     }
     /* One element of out for each of v, by the function for its type below. */
     template <class Out, class In> const Out *list(const std::vector<In> &v) {
@@ -135,7 +138,9 @@ gltf_node read(store &s, const tinygltf::Node &n) {
 
 gltf_indices read(store &s, const tinygltf::Scene &scene) { return s.indices(scene.nodes); }
 
-gltf_texture_info read(store &s, const tinygltf::TextureInfo &t) { return {t.index, t.texCoord, 1, s.object(t.extensions)}; }
+gltf_texture_info read(store &s, const tinygltf::TextureInfo &t) {
+    return {t.index, t.texCoord, 1, s.object(t.extensions)};
+}
 gltf_texture_info read(store &s, const tinygltf::NormalTextureInfo &t) {
     return {t.index, t.texCoord, t.scale, s.object(t.extensions)};
 }
@@ -179,7 +184,9 @@ gltf_light read(store &s, const tinygltf::Light &l) {
             l.spot.outerConeAngle};
 }
 
-gltf_skin read(store &s, const tinygltf::Skin &skin) { return {s.indices(skin.joints), skin.inverseBindMatrices, skin.skeleton}; }
+gltf_skin read(store &s, const tinygltf::Skin &skin) {
+    return {s.indices(skin.joints), skin.inverseBindMatrices, skin.skeleton};
+}
 gltf_channel read(store &, const tinygltf::AnimationChannel &c) { return {c.sampler, c.target_node}; }
 gltf_animation_sampler read(store &, const tinygltf::AnimationSampler &a) { return {a.input, a.output}; }
 gltf_animation read(store &s, const tinygltf::Animation &a) {

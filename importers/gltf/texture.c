@@ -62,17 +62,17 @@ static bool find_source(gltf_reader *r, const gltf_texture *t, int *source, cons
     const gltf_value *webp = value_member(&t->extensions, "EXT_texture_webp");
     *source = t->source;
     if (webp && !value_index(webp, "source", source, &where, r->report)) return false;
-    if (*source >= 0) return check_key(r, *source, r->envelope.images.count, "image", &where, "source");
+    if (*source >= 0) return gltf_check_key(r, *source, r->envelope.images.count, "image", &where, "source");
     report_warning(r->report, KILN_CODE_IMAGE, texture, "export the texture as PNG, JPEG or WebP",
                    "the texture has no image that kiln reads: it is left out");
     return true;
 }
 
-bool texture_read(gltf_reader *r, const gltf_texture_info *info, kiln_transfer transfer, uint32_t channel,
+bool gltf_read_texture(gltf_reader *r, const gltf_texture_info *info, kiln_transfer transfer, uint32_t channel,
                   kiln_texture *out, const kiln_where *where) {
     *out = (kiln_texture){0};
     if (info->texture == -1) return true;
-    if (!check_key(r, info->texture, r->document.texture_count, "texture", where, "index")) return false;
+    if (!gltf_check_key(r, info->texture, r->document.texture_count, "texture", where, "index")) return false;
     const gltf_texture *t = &r->document.textures[info->texture];
     kiln_where texture = where_item(&r->file, "textures", (size_t)info->texture);
     int source;
@@ -85,10 +85,10 @@ bool texture_read(gltf_reader *r, const gltf_texture_info *info, kiln_transfer t
     if (out->uv_set >= UV_SETS_MAX)
         return report_error(r->report, KILN_CODE_LIMIT, where, "use a lower UV set", "TEXCOORD_%u (kiln reads %d sets)",
                             out->uv_set, UV_SETS_MAX);
-    return add_image(r, source, &out->image);
+    return gltf_add_image(r, source, &out->image);
 }
 
-bool texture_read_member(gltf_reader *r, const gltf_value *object, const char *key, kiln_transfer transfer,
+bool gltf_read_texture_member(gltf_reader *r, const gltf_value *object, const char *key, kiln_transfer transfer,
                          uint32_t channel, kiln_texture *out, const kiln_where *where) {
     const gltf_value *value = value_member(object, key);
     *out = (kiln_texture){0};
@@ -100,5 +100,5 @@ bool texture_read_member(gltf_reader *r, const gltf_value *object, const char *k
         return false;
     const gltf_value *extensions = value_member(value, "extensions");
     if (extensions) info.extensions = *extensions;
-    return texture_read(r, &info, transfer, channel, out, &here);
+    return gltf_read_texture(r, &info, transfer, channel, out, &here);
 }

@@ -56,7 +56,8 @@ static bool check_path(const char *path, size_t length, const char *folder, cons
     if (strlen(path) != length) return refuse(where, report, "a URI with a zero byte in it", path);
     if (length == 0) return report_error(report, KILN_CODE_REFERENCE, where, stay_inside, "the URI is empty");
     if (has_scheme(path)) return refuse(where, report, "kiln opens relative URIs alone, no other scheme", path);
-    if (path[0] == '/' || path[0] == '\\') return refuse(where, report, "an absolute path leaves the asset's folder", path);
+    if (path[0] == '/' || path[0] == '\\')
+        return refuse(where, report, "an absolute path leaves the asset's folder", path);
     if (climbs(path)) return refuse(where, report, "the URI leaves the asset's folder", path);
     return folder || refuse(where, report, "a glb on standard input has no folder to find files in", path);
 }

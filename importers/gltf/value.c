@@ -15,7 +15,8 @@ static bool refuse(const char *wanted, const char *key, const kiln_where *object
                         "%s is expected", wanted);
 }
 
-bool value_number(const gltf_value *object, const char *key, double *number, const kiln_where *where, kiln_report *report) {
+bool value_number(const gltf_value *object, const char *key, double *number, const kiln_where *where,
+                  kiln_report *report) {
     const gltf_value *v = value_member(object, key);
     if (!v) return true;
     if (v->kind != GLTF_NUMBER) return refuse("a number", key, where, report);
@@ -23,7 +24,8 @@ bool value_number(const gltf_value *object, const char *key, double *number, con
     return true;
 }
 
-bool value_float(const gltf_value *object, const char *key, float *number, const kiln_where *where, kiln_report *report) {
+bool value_float(const gltf_value *object, const char *key, float *number, const kiln_where *where,
+                 kiln_report *report) {
     double value = (double)*number;
     if (!value_number(object, key, &value, where, report)) return false;
     *number = (float)value;

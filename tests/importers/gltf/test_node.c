@@ -155,6 +155,20 @@ static void reads_cameras(void **state) {
             KILN_CODE_RANGE, "cameras[0]", "xmag");
 }
 
+static void ignores_the_scale_of_cameras(void **state) {
+    (void)state;
+    import_nodes("'cameras': [{'type': 'perspective', 'perspective': {'yfov': 1, 'znear': 0.1}}], 'nodes': [{'mesh': 0}, "
+                 "{'scale': [2, 2, 2], 'children': [2]}, {'camera': 0, 'translation': [1, 2, 3], 'scale': [3, -1, 0.5], "
+                 "'rotation': [0, 0.7071067811865476, 0, 0.7071067811865476]}]");
+    const double *m = kiln_scene_camera(scene, 1)->transform;
+    assert_point(m, (dvec3){0, 0, 0}, (dvec3){2, 4, 6});
+    assert_point(m, (dvec3){0, 0, -1}, (dvec3){1, 4, 6}); /* a quarter turn about y looks along −x */
+    assert_point(m, (dvec3){0, 1, 0}, (dvec3){2, 5, 6});
+    assert_point(m, (dvec3){1, 0, 0}, (dvec3){2, 4, 5});
+    refused("'cameras': [{'type': 'perspective', 'perspective': {'yfov': 1, 'znear': 0.1}}], 'nodes': [{'camera': 0, 'scale': [0, 0, 0]}]",
+            KILN_CODE_RANGE, "cameras[0]", "flattens");
+}
+
 #define LIGHTS(list) "'extensions': {'KHR_lights_punctual': {'lights': [" list "]}}, "
 #define LIT(index) "{'extensions': {'KHR_lights_punctual': {'light': " #index "}}, 'name': 'n'}"
 
@@ -242,6 +256,7 @@ int main(void) {
         cmocka_unit_test(refuses_broken_hierarchies),
         cmocka_unit_test(walks_deep_hierarchies),
         cmocka_unit_test_teardown(reads_cameras, tear_down),
+        cmocka_unit_test_teardown(ignores_the_scale_of_cameras, tear_down),
         cmocka_unit_test_teardown(reads_lights, tear_down),
         cmocka_unit_test(mends_cone_angles),
         cmocka_unit_test_teardown(hides_nodes, tear_down),
