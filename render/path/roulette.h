@@ -28,4 +28,10 @@ KERNEL float roulette_survival(const roulette *r, vec3 throughput, float squeeze
     return survival > 0.0f ? survival : 1.0f; /* a dead path needs no roulette */
 }
 
+/* What the throughput is multiplied with: 0 or 1/survival, by u in [0, 1). */
+KERNEL float roulette_weight(const roulette *r, vec3 throughput, float squeeze, float u) {
+    float survival = roulette_survival(r, throughput, squeeze);
+    return u < survival ? 1.0f / survival : 0.0f;
+}
+
 #endif

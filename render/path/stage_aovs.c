@@ -1,11 +1,11 @@
-#include "render/path/shading.h"
+#include "render/path/lanes.h"
 #include "render/path/stages.h"
 
 KERNEL void write_albedo(unsigned mask, const path_context *c, batch *b, lane_range lanes) {
     const path_state *s = batch_state(b);
     path_output *o = &b->out;
     for (uint32_t i = lanes.first; i < lanes.end; i++) {
-        shading p = shading_load(mask, s, &b->scratch, i, c->world->slices);
+        shading p = lane_shading(mask, s, &b->scratch, i, c->world->slices);
         vec3 a = bsdf_albedo(mask, &p.bsdf);
         o->albedo[0][s->slot[i]] = a.x, o->albedo[1][s->slot[i]] = a.y, o->albedo[2][s->slot[i]] = a.z;
     }

@@ -1,33 +1,25 @@
-#include "render/path/estimate.h"
+#include "render/path/lanes.h"
 #include "render/path/medium.h"
-#include "render/path/shading.h"
 #include "render/path/stages.h"
 
-/* Throughput × f cos × radiance × weight / density, and the shadow ray that decides on it. */
 KERNEL void weigh(unsigned mask, const path_context *c, batch *b, lane_range lanes) {
     const path_state *s = batch_state(b);
     path_scratch *x = &b->scratch;
     const float *slices = c->world->slices;
     kiln_estimator estimator = c->estimator;
     LANE_LOOP (uint32_t i = lanes.first; i < lanes.end; i++) {
-        shading p = shading_load(mask, s, x, i, slices);
-        vec3 wi = {x->wx[i], x->wy[i], x->wz[i]}, local = frame_to_local(&p.frame, wi);
-        bsdf_value f = bsdf_evaluate(mask, &p.bsdf, local, slices);
-        float weight = estimate_light_weight(estimator, x->parallel[i] > 0.5f, x->light_pdf[i], f.pdf);
-        int comes = shading_side_agrees(&p, local, wi) & (x->light_pdf[i] > 0.0f);
-        float scale = comes ? weight / x->light_pdf[i] : 0.0f;
-        x->cr[i] *= s->tr[i] * f.value.x * scale;
-        x->cg[i] *= s->tg[i] * f.value.y * scale;
-        x->cb[i] *= s->tb[i] * f.value.z * scale;
-
-        vec3 o = shading_leave(&p, v3(x->px[i], x->py[i], x->pz[i]), x->reach[i], wi);
-        int placed = x->distance[i] < INFINITY;
-        vec3 to = v3_sub(v3(x->tx[i], x->ty[i], x->tz[i]), o);
-        float length2 = v3_dot(to, to), length = sqrtf(length2);
-        vec3 d = v3_select(placed, v3_scale(to, 1.0f / fm_max(length, 1e-30f)), wi);
-        x->sox[i] = o.x, x->soy[i] = o.y, x->soz[i] = o.z;
-        x->sdx[i] = d.x, x->sdy[i] = d.y, x->sdz[i] = d.z;
-        x->tfar[i] = placed ? length : INFINITY;
+        shading p = lane_shading(mask, s, x, i, slices);
+        light_sampled l = {.wi = {x->wx[i], x->wy[i], x->wz[i]},
+                           .target = {x->tx[i], x->ty[i], x->tz[i]},
+                           .distance = x->distance[i],
+                           .radiance = {x->cr[i], x->cg[i], x->cb[i]},
+                           .parallel = x->parallel[i] > 0.5f};
+        vec3 throughput = {s->tr[i], s->tg[i], s->tb[i]};
+        shading_connection r = shading_connect(mask, &p, estimator, throughput, &l, x->light_pdf[i], slices);
+        x->cr[i] = r.contribution.x, x->cg[i] = r.contribution.y, x->cb[i] = r.contribution.z;
+        x->sox[i] = r.origin.x, x->soy[i] = r.origin.y, x->soz[i] = r.origin.z;
+        x->sdx[i] = r.direction.x, x->sdy[i] = r.direction.y, x->sdz[i] = r.direction.z;
+        x->tfar[i] = r.far;
     }
 }
 

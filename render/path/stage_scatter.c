@@ -1,35 +1,30 @@
+#include "render/path/lanes.h"
 #include "render/path/medium.h"
 #include "render/path/roulette.h"
-#include "render/path/shading.h"
 #include "render/path/stages.h"
 
 KERNEL void scatter(unsigned mask, const path_context *c, batch *b, lane_range lanes) {
     path_state *s = batch_state(b);
     path_scratch *x = &b->scratch;
     const float *slices = c->world->slices;
-    roulette r = roulette_make(c, b->depth);
+    roulette policy = roulette_make(c, b->depth);
     LANE_LOOP (uint32_t i = lanes.first; i < lanes.end; i++) {
-        shading p = shading_load(mask, s, x, i, slices);
-        bsdf_sampled next = bsdf_sample(mask, &p.bsdf, x->u_lobe[i], (vec2){x->u_bsdf_x[i], x->u_bsdf_y[i]}, slices);
-        vec3 wi = v3_normalize(frame_to_world(&p.frame, next.wi));
-        int goes_on = shading_side_agrees(&p, next.wi, wi);
-        vec3 throughput = v3_mul(v3(s->tr[i], s->tg[i], s->tb[i]), next.multiplier);
-        throughput = v3_scale(throughput, goes_on ? 1.0f : 0.0f);
+        shading p = lane_shading(mask, s, x, i, slices);
+        vec3 throughput = {s->tr[i], s->tg[i], s->tb[i]};
+        vec2 u = {x->u_bsdf_x[i], x->u_bsdf_y[i]};
+        shading_scattering r = shading_scatter(mask, &p, throughput, x->u_lobe[i], u, slices);
         float squeeze = s->squeeze[i];
         if (mask & BSDF_TRANSMISSIVE) {
-            int crosses = next.wi.z < 0.0f, bends = crosses & (p.bsdf.thin < 0.5f);
+            int bends = r.crosses & (p.bsdf.thin < 0.5f);
             squeeze *= bends ? p.bsdf.eta * p.bsdf.eta : 1.0f;
             s->squeeze[i] = squeeze;
-            x->crosses[i] = (uint32_t)crosses;
+            x->crosses[i] = (uint32_t)r.crosses;
         }
-        float survival = roulette_survival(&r, throughput, squeeze);
-        float kept = x->u_roulette[i] < survival ? 1.0f / survival : 0.0f;
-
-        vec3 o = shading_leave(&p, v3(x->px[i], x->py[i], x->pz[i]), x->reach[i], wi);
-        s->ox[i] = o.x, s->oy[i] = o.y, s->oz[i] = o.z;
-        s->dx[i] = wi.x, s->dy[i] = wi.y, s->dz[i] = wi.z;
-        s->tr[i] = throughput.x * kept, s->tg[i] = throughput.y * kept, s->tb[i] = throughput.z * kept;
-        s->pdf[i] = next.pdf;
+        float kept = roulette_weight(&policy, r.throughput, squeeze, x->u_roulette[i]);
+        s->ox[i] = r.origin.x, s->oy[i] = r.origin.y, s->oz[i] = r.origin.z;
+        s->dx[i] = r.direction.x, s->dy[i] = r.direction.y, s->dz[i] = r.direction.z;
+        s->tr[i] = r.throughput.x * kept, s->tg[i] = r.throughput.y * kept, s->tb[i] = r.throughput.z * kept;
+        s->pdf[i] = r.pdf;
     }
 }
 

@@ -38,6 +38,62 @@ KERNEL vec3 surface_normal(vec3 n, vec3 geometric) {
     return v3_select(smooth, v3_scale(n, side / sqrtf(smooth ? length2 : 1.0f)), geometric);
 }
 
+/* A triangle in render space, and what Embree and its copy say. */
+typedef struct surface_triangle {
+    vec3 p0, p1, p2;
+    vec3 n0, n1, n2; /* 0: flat */
+    vec2 uv0, uv1, uv2;
+    float side;      /* −1: its copy mirrors */
+    float magnitude; /* of its copy */
+    triangle_hit embree;
+} surface_triangle;
+
+typedef struct surface_point {
+    triangle_hit hit;
+    vec3 position, geometric, shading; /* normals on the side that the ray came from */
+    float reach, area, front;          /* front: 1, from behind: 0 */
+    vec2 uv;
+} surface_point;
+
+KERNEL surface_point surface_at(vec3 o, vec3 d, const surface_triangle *s) {
+    vec3 e1 = v3_sub(s->p1, s->p0), e2 = v3_sub(s->p2, s->p0);
+    triangle_hit h = triangle_intersect(o, d, s->p0, e1, e2, s->embree);
+    float b0 = 1.0f - h.u - h.v;
+    vec3 n = v3_scale(v3_cross(e1, e2), s->side);
+    float twice = sqrtf(v3_dot(n, n));
+    n = v3_scale(n, 1.0f / fm_max(twice, 1e-37f)); /* Embree reports no hit on a triangle without area */
+    float front = v3_dot(n, d) < 0.0f ? 1.0f : 0.0f;
+    n = v3_scale(n, front > 0.5f ? 1.0f : -1.0f);
+    vec3 smooth = v3_madd(v3_madd(v3_scale(s->n0, b0), h.u, s->n1), h.v, s->n2);
+    return (surface_point){.hit = h,
+                           .position = v3_madd(v3_madd(s->p0, h.u, e1), h.v, e2),
+                           .geometric = n,
+                           .shading = surface_normal(smooth, n),
+                           .reach = surface_reach(n, s->p0, e1, e2, s->magnitude),
+                           .area = 0.5f * twice,
+                           .front = front,
+                           .uv = {b0 * s->uv0.x + h.u * s->uv1.x + h.v * s->uv2.x,
+                                  b0 * s->uv0.y + h.u * s->uv1.y + h.v * s->uv2.y}};
+}
+
+/* The tangent-space normal of a map in render space: x T + y B + z N, N of unit length, T made orthogonal to it,
+ * B = w N × T (glTF 2.0, 3.7.2.1). x = y = 0 stands for no map. Seen from behind, the bent surface is turned over as a
+ * whole: its relief stays where it is. */
+KERNEL vec3 surface_map(vec3 normal, vec3 tangent, float w, vec3 map, float front) {
+    float side = front > 0.5f ? 1.0f : -1.0f;
+    int mapped = (map.x != 0.0f) | (map.y != 0.0f);
+    vec3 t = v3_madd(tangent, -v3_dot(tangent, normal), normal);
+    float length2 = v3_dot(t, t);
+    int usable = mapped & (length2 > 1e-12f); /* of what were unit vectors */
+    t = v3_scale(t, 1.0f / sqrtf(usable ? length2 : 1.0f));
+    vec3 bitangent = v3_scale(v3_cross(normal, t), w * side);
+    vec3 bent = v3_madd(v3_madd(v3_scale(normal, map.z), map.x * side, t), map.y * side, bitangent);
+    float bent2 = v3_dot(bent, bent);
+    usable = usable & (bent2 > 1e-12f);
+    bent = v3_scale(bent, 1.0f / sqrtf(usable ? bent2 : 1.0f));
+    return v3_select(usable, bent, normal);
+}
+
 /* A shading normal that faces away from wo has no meaning for a reflection: it is turned until wo just grazes the
  * surface. The least cosine, 1/100, keeps the frame's wo.z well above rounding. */
 KERNEL vec3 surface_face(vec3 n, vec3 wo) {

@@ -1,0 +1,51 @@
+#include "render/context.h"
+
+#include "base/hash.h"
+
+/* The first bounces must not be cut: most of the light is in them. */
+enum { AUTO_ROULETTE_MIN = 3 };
+
+static void set_roulette(path_context *c, const kiln_roulette *r) {
+    c->roulette = r->kind == KILN_ROULETTE_AUTO ? KILN_ROULETTE_THROUGHPUT : r->kind;
+    c->roulette_min = r->kind == KILN_ROULETTE_AUTO ? AUTO_ROULETTE_MIN : r->min_depth;
+    c->roulette_p = (float)r->p;
+}
+
+static bool check_options(const kiln_render_options *o, kiln_report *report) {
+    if (o->roulette.kind == KILN_ROULETTE_FIXED && !(o->roulette.p > 0 && o->roulette.p <= 1))
+        return report_error(report, KILN_CODE_USAGE, NULL, "give a probability above 0, at most 1",
+                            "fixed roulette with the probability %g", o->roulette.p);
+    if (o->spp > FIXED_SAMPLES_MAX)
+        return report_error(report, KILN_CODE_USAGE, NULL, "give at most 16777216", "%u samples per pixel", o->spp);
+    if (o->noise < 0 || o->budget_seconds < 0 || o->filter_width < 0 || o->error_scale < 0)
+        return report_error(report, KILN_CODE_USAGE, NULL, "give 0 or more", "noise, budget or filter width is negative");
+    return true;
+}
+
+bool context_make(const kiln_renderer *r, const kiln_render_options *o, const kiln_film *film, path_context *c,
+                         kiln_report *report) {
+    const kiln_film_desc *d = &film->desc;
+    const light_table *lights = &r->world->lights;
+    const kiln_camera *view = o->camera ? o->camera : kiln_scene_camera(r->scene, 1);
+    if (!check_options(o, report)) return false;
+    if (!view)
+        return report_error(report, KILN_CODE_USAGE, NULL, "give a camera", "the scene has no camera");
+    light_choice choice = o->estimator == KILN_ESTIMATOR_BSDF          ? CHOOSE_POINTS
+                          : o->light_sampling == KILN_LIGHTS_UNIFORM ? CHOOSE_UNIFORMLY
+                                                                       : CHOOSE_BY_POWER;
+    *c = (path_context){.world = r->world,
+                        .width = d->width,
+                        .height = d->height,
+                        .seed = hash_u64(o->seed),
+                        .independent = o->sampler == KILN_SAMPLER_INDEPENDENT,
+                        .estimator = o->estimator,
+                        .light_cdf = lights->cdf[choice],
+                        .light_guide = lights->guide[choice],
+                        .max_depth = o->max_depth == KILN_DEPTH_ZERO ? 0 : o->max_depth ? o->max_depth : 64,
+                        .background = o->background,
+                        .background_color = v3_load(o->background_color),
+                        .aovs = d->aovs & (1u << KILN_AOV_ALBEDO | 1u << KILN_AOV_NORMAL | 1u << KILN_AOV_DEPTH)};
+    set_roulette(c, &o->roulette);
+    pixel_filter_make(&c->filter, o->filter, o->filter_width);
+    return camera_make(r->world, view, d->width, d->height, &c->camera, report);
+}
