@@ -69,7 +69,7 @@ static bool find_source(gltf_reader *r, const gltf_texture *t, int *source, cons
 }
 
 bool gltf_read_texture(gltf_reader *r, const gltf_texture_info *info, kiln_transfer transfer, uint32_t channel,
-                  kiln_texture *out, const kiln_where *where) {
+                       kiln_texture *out, const kiln_where *where) {
     *out = (kiln_texture){0};
     if (info->texture == -1) return true;
     if (!gltf_check_key(r, info->texture, r->document.texture_count, "texture", where, "index")) return false;
@@ -89,7 +89,7 @@ bool gltf_read_texture(gltf_reader *r, const gltf_texture_info *info, kiln_trans
 }
 
 bool gltf_read_texture_member(gltf_reader *r, const gltf_value *object, const char *key, kiln_transfer transfer,
-                         uint32_t channel, kiln_texture *out, const kiln_where *where) {
+                              uint32_t channel, kiln_texture *out, const kiln_where *where) {
     const gltf_value *value = value_member(object, key);
     *out = (kiln_texture){0};
     if (!value) return true;

@@ -8,10 +8,10 @@
  * scene. Zero where there is none. transfer says how its numbers are meant here, channel which of them count: the
  * same image may be colour in one use and data in another. where: the textureInfo. */
 bool gltf_read_texture(gltf_reader *, const gltf_texture_info *info, kiln_transfer, uint32_t channel, kiln_texture *,
-                  const kiln_where *where);
+                       const kiln_where *where);
 
 /* The same for a textureInfo inside an extension: member key of the object. */
 bool gltf_read_texture_member(gltf_reader *, const gltf_value *object, const char *key, kiln_transfer, uint32_t channel,
-                         kiln_texture *, const kiln_where *where);
+                              kiln_texture *, const kiln_where *where);
 
 #endif

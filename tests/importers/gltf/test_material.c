@@ -137,6 +137,12 @@ static void transforms_textures(void **state) {
     }
     assert_int_equal(t->uv_set, 1);
     kiln_scene_destroy(scene);
+    /* Khronos' TextureTransformTest: the tip of its arrow, at 0.7778 in u and v, belongs on the mark "correct". */
+    t = &material(TRANSFORMED("'rotation': 0.39269908169872414"))->emission.texture;
+    const float *r = t->transform, mark[2] = {0.5f - 0.0790482f, 0.5f + 0.5162675f};
+    assert_true(fabsf(r[0] * mark[0] + r[1] * mark[1] - 0.7778174f) < 1e-5f);
+    assert_true(fabsf(r[3] * mark[0] + r[4] * mark[1] - 0.7778174f) < 1e-5f);
+    kiln_scene_destroy(scene);
     t = &material(TRANSFORMED("'offset': [0, 1], 'scale': [1, -1], 'texCoord': 0"))->emission.texture; /* T inverted */
     assert_floats(t->transform, (float[]){1, 0, 0, 0, -1, 1}, 6);
     assert_int_equal(t->uv_set, 0);
