@@ -125,6 +125,10 @@ void embree_version(char text[EMBREE_VERSION_MAX]) {
 
 enum { WIDTH = 16 };
 
+/* On a plane through the origin of an axis everything is exact, errors and offsets are 0, and Embree counts t = 0 as a
+ * hit: rays that start on a surface start just behind 0. */
+#define TNEAR_LEAST 0x1p-126f
+
 /* A ray that Embree can take: finite, and of unit length but for rounding. x − x is 0 for finite x alone. */
 static int is_ray(const struct RTCRay16 *r, int k) {
     float dx = r->dir_x[k], dy = r->dir_y[k], dz = r->dir_z[k], length2 = dx * dx + dy * dy + dz * dz;
@@ -141,7 +145,7 @@ static uint32_t load(const ray_lanes *rays, uint32_t first, struct RTCRay16 *r, 
         uint32_t lane = first + (k < n ? k : 0), i = rays->lanes ? rays->lanes[lane] : lane;
         r->org_x[k] = rays->ox[i], r->org_y[k] = rays->oy[i], r->org_z[k] = rays->oz[i];
         r->dir_x[k] = rays->dx[i], r->dir_y[k] = rays->dy[i], r->dir_z[k] = rays->dz[i];
-        r->tnear[k] = rays->tnear ? rays->tnear[i] : 0.0f;
+        r->tnear[k] = rays->tnear ? rays->tnear[i] : TNEAR_LEAST;
         r->tfar[k] = rays->tfar ? rays->tfar[i] : INFINITY;
         r->time[k] = 0.0f;
         r->mask[k] = ~0u;

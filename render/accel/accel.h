@@ -24,7 +24,7 @@ void embree_version(char text[EMBREE_VERSION_MAX]);
 /* Rays as arrays, `count` of them, or those that lanes names. Directions are of unit length. */
 typedef struct ray_lanes {
     const float *ox, *oy, *oz, *dx, *dy, *dz;
-    const float *tnear, *tfar; /* NULL: 0, infinity */
+    const float *tnear, *tfar; /* NULL: the smallest above 0, infinity */
     const float *coverage;     /* a random number for each ray: does it stop at partial coverage? */
     const uint32_t *lanes;     /* NULL: 0 … count − 1 */
     uint32_t count;

@@ -1,0 +1,263 @@
+#include "tests/render/oracle.h"
+
+#include "render/path/medium.h"
+#include "render/path/roulette.h"
+#include "render/path/shading.h"
+#include "render/path/surface.h"
+
+/* One path, as it is between bounces. */
+typedef struct path {
+    sample_point point;
+    vec3 origin, direction, throughput, radiance;
+    float pdf, squeeze, near, far;
+    uint64_t media;
+    uint32_t depth;
+} path;
+
+typedef struct hit {
+    uint32_t triangle, instance;
+    surface_point p;
+    const world_material *material;
+} hit;
+
+static vec2 draw(const path_context *c, const path *p, sample_purpose purpose) {
+    return sample_pair(c->independent, p->point, purpose, p->depth);
+}
+
+static path start(const path_context *c, path_sample s) {
+    path p = {.point = sample_point_make(c->seed, s.y << 16 | s.x, s.n), .throughput = {1, 1, 1}, .squeeze = 1};
+    vec2 pixel = draw(c, &p, SAMPLE_PIXEL), lens = draw(c, &p, SAMPLE_LENS);
+    float across = 2.0f / (float)c->width, down = 2.0f / (float)c->height;
+    float x = (float)s.x + 0.5f + pixel_filter_offset(&c->filter, pixel.x);
+    float y = (float)s.y + 0.5f + pixel_filter_offset(&c->filter, pixel.y);
+    camera_ray r = camera_ray_at(&c->camera, x * across - 1.0f, 1.0f - y * down, lens);
+    p.origin = r.origin, p.direction = r.direction, p.near = r.near, p.far = r.far;
+    return p;
+}
+
+static vec3 place_point(const float *m, const float *p) {
+    return v3(m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
+              m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]);
+}
+static vec3 place_normal(const float *m, const float *p) {
+    return v3(m[0] * p[0] + m[1] * p[1] + m[2] * p[2], m[3] * p[0] + m[4] * p[1] + m[5] * p[2],
+              m[6] * p[0] + m[7] * p[1] + m[8] * p[2]);
+}
+
+/* Closest hit, with single-sided surfaces that the camera sees from behind looked through. */
+static bool find(const path_context *c, path *p, hit *h) {
+    const world *w = c->world;
+    float coverage = draw(c, p, SAMPLE_COVERAGE).x, t, u, v;
+    trace_counts counts = {0};
+    float near = p->depth ? 0.0f : p->near, far = p->depth ? INFINITY : p->far;
+    for (;;) {
+        ray_lanes ray = {&p->origin.x, &p->origin.y, &p->origin.z, &p->direction.x, &p->direction.y, &p->direction.z,
+                         &near, &far, &coverage, NULL, 1};
+        accel_closest(w, &ray, &t, &u, &v, &h->triangle, &h->instance, &counts);
+        if (h->triangle >= TRIANGLE_REFUSED) return false;
+        const uint32_t *i = w->triangles + 3 * (size_t)h->triangle;
+        const world_vertex *a = &w->vertices[i[0]], *b = &w->vertices[i[1]], *d = &w->vertices[i[2]];
+        const world_instance *copy = &w->instances[h->instance];
+        surface_triangle tri = {.uv0 = {a->uv[0], a->uv[1]}, .uv1 = {b->uv[0], b->uv[1]}, .uv2 = {d->uv[0], d->uv[1]},
+                                .side = copy->side, .magnitude = copy->magnitude, .embree = {u, v, t}};
+        bool placed = h->instance != 0;
+        tri.p0 = placed ? place_point(copy->m, a->p) : v3_load(a->p);
+        tri.p1 = placed ? place_point(copy->m, b->p) : v3_load(b->p);
+        tri.p2 = placed ? place_point(copy->m, d->p) : v3_load(d->p);
+        tri.n0 = placed ? place_normal(copy->normal, a->n) : v3_load(a->n);
+        tri.n1 = placed ? place_normal(copy->normal, b->n) : v3_load(b->n);
+        tri.n2 = placed ? place_normal(copy->normal, d->n) : v3_load(d->n);
+        h->p = surface_at(p->origin, p->direction, &tri);
+        h->material = &w->materials[w->triangle_material[h->triangle]];
+        bool one_sided = !(h->material->flags & MATERIAL_DOUBLE_SIDED) && h->material->kind != KIND_TRANSMISSIVE;
+        if (p->depth || !one_sided || h->p.front > 0.5f) return true;
+        near = nextafterf(t, INFINITY);
+    }
+}
+
+static void collect(path *p, vec3 radiance, float weight) {
+    p->radiance = v3_add(p->radiance, v3_mul(p->throughput, v3_scale(radiance, weight)));
+}
+
+static float chosen_probability(const path_context *c, uint32_t which) {
+    return c->light_cdf ? distribution_probability(c->light_cdf, which) : 0.0f;
+}
+
+static void escape(const path_context *c, path *p) {
+    const light_table *t = &c->world->lights;
+    if (p->depth == 0 && c->background == KILN_BACKGROUND_COLOR) collect(p, c->background_color, 1);
+    if (p->depth == 0 && c->background != KILN_BACKGROUND_ENVIRONMENT) return;
+    if (t->environment.present) {
+        environment_value v = environment_look_up(&t->environment, environment_place(p->direction));
+        float pdf = chosen_probability(c, t->environment.light) * v.pdf;
+        collect(p, v.radiance, estimate_hit_weight(c->estimator, p->pdf, pdf));
+    }
+    vec3 suns = {0, 0, 0};
+    for (uint32_t k = 0; k < t->distant_count; k++) {
+        const light *l = &t->lights[t->distant[k]];
+        vec3 off = v3_add(p->direction, l->axis);
+        if (0.5f * v3_dot(off, off) > l->one_minus_cos) continue;
+        float pdf = chosen_probability(c, t->distant[k]) * (0.159154943f / l->one_minus_cos);
+        suns = v3_madd(suns, estimate_hit_weight(c->estimator, p->pdf, pdf), l->radiance);
+    }
+    if (t->distant_count) collect(p, suns, 1);
+}
+
+static vec2 uv_of(const world *w, const hit *h, uint32_t set) {
+    if (!set) return h->p.uv;
+    const uint32_t *i = w->triangles + 3 * (size_t)h->triangle;
+    const float *a = w->uvs[set] + 2 * (size_t)i[0], *b = w->uvs[set] + 2 * (size_t)i[1], *d = w->uvs[set] + 2 * (size_t)i[2];
+    float b1 = h->p.hit.u, b2 = h->p.hit.v, b0 = 1.0f - b1 - b2;
+    return (vec2){b0 * a[0] + b1 * b[0] + b2 * d[0], b0 * a[1] + b1 * b[1] + b2 * d[1]};
+}
+
+static void mix4(const world *w, const hit *h, const float *values, float out[4]) {
+    const uint32_t *i = w->triangles + 3 * (size_t)h->triangle;
+    float b1 = h->p.hit.u, b2 = h->p.hit.v, b0 = 1.0f - b1 - b2;
+    for (int k = 0; k < 4; k++)
+        out[k] = b0 * values[4 * (size_t)i[0] + (size_t)k] + b1 * values[4 * (size_t)i[1] + (size_t)k] +
+                 b2 * values[4 * (size_t)i[2] + (size_t)k];
+}
+
+/* Material constants times textures; the mapped normal. */
+static surface look_up(const path_context *c, const hit *h, vec3 *emission, vec3 *normal) {
+    const world *w = c->world;
+    const world_material *m = h->material;
+    bool outside = h->p.front > 0.5f || m->thin > 0.5f;
+    surface s = {v3_load(m->base), m->metallic, m->roughness, m->specular, v3_load(m->specular_color), m->f0,
+                 m->transmission, outside ? m->eta : 1.0f / m->eta, m->thin,
+                 outside ? m->slice_outside : m->slice_inside, outside ? m->slice_inside : m->slice_outside};
+    *emission = v3_load(m->emission);
+    if (w->colors) {
+        float tint[4];
+        mix4(w, h, w->colors, tint);
+        vec3 *target = m->flags & MATERIAL_UNLIT ? emission : &s.base;
+        *target = v3_mul(*target, v3_load(tint));
+    }
+    for (int slot = 0; slot < SLOT_COUNT; slot++) {
+        if (!m->texture[slot]) continue;
+        const world_texture *t = &w->textures[m->texture[slot] - 1];
+        vec2 uv = uv_of(w, h, t->uv_set);
+        texel x = texture_sample(t, uv.x, uv.y);
+        float one = texture_channel(t, uv.x, uv.y);
+        vec3 rgb = {x.r, x.g, x.b};
+        if (slot == SLOT_BASE) s.base = v3_mul(s.base, rgb);
+        if (slot == SLOT_EMISSION) *emission = v3_mul(*emission, rgb);
+        if (slot == SLOT_SPECULAR_COLOR) s.specular_color = v3_mul(s.specular_color, rgb);
+        if (slot == SLOT_METALLIC) s.metallic *= one;
+        if (slot == SLOT_ROUGHNESS) s.roughness *= one;
+        if (slot == SLOT_SPECULAR) s.specular *= one;
+        if (slot == SLOT_TRANSMISSION) s.transmission *= one;
+        if (slot != SLOT_NORMAL) continue;
+        float tangent[4];
+        mix4(w, h, w->tangents, tangent);
+        const world_instance *copy = &w->instances[h->instance];
+        vec3 direction = v3_load(tangent);
+        const float *r = copy->m;
+        if (h->instance)
+            direction = v3(r[0] * tangent[0] + r[1] * tangent[1] + r[2] * tangent[2],
+                           r[4] * tangent[0] + r[5] * tangent[1] + r[6] * tangent[2],
+                           r[8] * tangent[0] + r[9] * tangent[1] + r[10] * tangent[2]);
+        float sign = w->tangents[4 * (size_t)w->triangles[3 * (size_t)h->triangle] + 3] * copy->side;
+        vec3 map = {(2.0f * x.r - 1.0f) * m->normal_scale, (2.0f * x.g - 1.0f) * m->normal_scale, 2.0f * x.b - 1.0f};
+        *normal = surface_map(*normal, direction, sign, map, h->p.front);
+    }
+    return s;
+}
+
+static void emit(const path_context *c, path *p, const hit *h, vec3 emission) {
+    const world *w = c->world;
+    const world_material *m = h->material;
+    bool shines = h->p.front > 0.5f || m->flags & MATERIAL_DOUBLE_SIDED || m->kind == KIND_TRANSMISSIVE;
+    if (!shines) return;
+    uint32_t number = w->triangle_light ? w->triangle_light[h->triangle] : LIGHT_NONE;
+    float probability = number == LIGHT_NONE ? 0.0f : chosen_probability(c, w->instances[h->instance].light_base + number);
+    float pdf = probability * light_triangle_pdf(h->p.hit.t, v3_dot(h->p.geometric, p->direction), h->p.area);
+    float weight = estimate_hit_weight(c->estimator, p->pdf, pdf);
+    p->radiance.x += p->throughput.x * emission.x * weight;
+    p->radiance.y += p->throughput.y * emission.y * weight;
+    p->radiance.z += p->throughput.z * emission.z * weight;
+}
+
+static unsigned mask_of(material_kind kind) {
+    return kind == KIND_DIFFUSE ? SHADING_MASK_DIFFUSE : kind == KIND_GLOSSY ? SHADING_MASK_GLOSSY : SHADING_MASK_TRANSMISSIVE;
+}
+
+/* Next-event estimation. */
+static void connect(const path_context *c, path *p, const hit *h, const shading *s, unsigned mask) {
+    const world *w = c->world;
+    const light_table *t = &w->lights;
+    vec2 place = draw(c, p, SAMPLE_LIGHT), pick = draw(c, p, SAMPLE_LIGHT_PICK);
+    float rest;
+    uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, pick.x, &rest);
+    light l = t->lights[k];
+    if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, place, &l);
+    light_sampled r = light_sample(KIND(LIGHT_KINDS) - 1, &l, s->position, place);
+    if (l.texture) {
+        vec2 at = warp_triangle(place);
+        float b0 = 1.0f - at.x - at.y;
+        texel x = texture_sample(&w->textures[l.texture - 1], b0 * l.uv[0][0] + at.x * l.uv[1][0] + at.y * l.uv[2][0],
+                                 b0 * l.uv[0][1] + at.x * l.uv[1][1] + at.y * l.uv[2][1]);
+        r.radiance = v3_mul(r.radiance, v3(x.r, x.g, x.b));
+    }
+    float density = r.pdf * distribution_probability(c->light_cdf, k);
+    shading_connection n = shading_connect(mask, s, c->estimator, p->throughput, &r, density, w->slices);
+    if (w->absorbs) {
+        uint64_t media = p->media;
+        uint32_t medium = h->material->kind == KIND_TRANSMISSIVE ? h->material->medium : 0;
+        if (medium && v3_dot(r.wi, s->geometric) < 0.0f) media = medium_cross(media, medium, h->p.front > 0.5f);
+        n.contribution = v3_mul(n.contribution, medium_transmittance(w->media + 3 * (media & 0xffffu), r.distance));
+    }
+    if (!(v3_max(n.contribution) > 0.0f)) return;
+    uint32_t visible = RAY_STOPPED;
+    trace_counts counts = {0};
+    ray_lanes ray = {&n.origin.x, &n.origin.y, &n.origin.z, &n.direction.x, &n.direction.y, &n.direction.z,
+                     NULL, &n.far, &pick.y, NULL, 1};
+    accel_visible(w, &ray, &visible, &counts);
+    if (visible == RAY_REACHES) p->radiance = v3_add(p->radiance, n.contribution);
+}
+
+/* The BSDF's direction and roulette; false: the path ends. */
+static bool scatter(const path_context *c, path *p, const hit *h, const shading *s, unsigned mask) {
+    vec2 direction = draw(c, p, SAMPLE_BSDF), lobe = draw(c, p, SAMPLE_LOBE);
+    shading_scattering r = shading_scatter(mask, s, p->throughput, lobe.x, direction, c->world->slices);
+    if (mask & BSDF_TRANSMISSIVE && r.crosses) {
+        if (s->bsdf.thin < 0.5f) p->squeeze *= s->bsdf.eta * s->bsdf.eta;
+        p->media = medium_cross(p->media, h->material->medium, h->p.front > 0.5f);
+    }
+    roulette policy = roulette_make(c, p->depth);
+    p->throughput = v3_scale(r.throughput, roulette_weight(&policy, r.throughput, p->squeeze, lobe.y));
+    p->origin = r.origin, p->direction = r.direction, p->pdf = r.pdf;
+    return v3_max(p->throughput) > 0.0f;
+}
+
+oracle_result oracle_trace(const path_context *c, path_sample sample) {
+    path p = start(c, sample);
+    oracle_result out = {.alpha = 1};
+    bool beyond = false;
+    for (;; p.depth++) {
+        hit h;
+        if (!find(c, &p, &h)) {
+            if (p.depth == 0) out.alpha = 0;
+            escape(c, &p);
+            break;
+        }
+        if (c->world->absorbs)
+            p.throughput = v3_mul(p.throughput, medium_transmittance(c->world->media + 3 * (p.media & 0xffffu), h.p.hit.t));
+        vec3 wo = v3_neg(p.direction), normal = h.p.shading, emission;
+        surface s = look_up(c, &h, &emission, &normal);
+        normal = surface_face(normal, wo);
+        if (c->world->emits) emit(c, &p, &h, emission);
+        if (p.depth >= c->max_depth) {
+            if (!path_is_probe(p.point.seed, p.point.index) || p.depth >= c->max_depth + PROBE_DEPTHS) break;
+            if (!beyond) out.radiance = p.radiance, p.radiance = v3_splat(0);
+            beyond = true;
+        }
+        unsigned mask = mask_of(h.material->kind);
+        shading point = shading_make(mask, &s, h.p.position, h.p.geometric, normal, h.p.reach, wo, c->world->slices);
+        if (c->light_cdf) connect(c, &p, &h, &point, mask);
+        if (!scatter(c, &p, &h, &point, mask)) break;
+    }
+    *(beyond ? &out.beyond : &out.radiance) = p.radiance;
+    return out;
+}
