@@ -43,9 +43,10 @@ static inline float fm_power_of_two(int32_t k) { return fm_from_bits((uint32_t)(
 /* sin and cos of r + quadrant · π/2 from those of r: bit 0 of the quadrant swaps them, bit 1 negates the sine, bits 0
  * and 1 together the cosine. */
 static inline fm_pair fm_turn_quadrant(float s, float c, uint32_t quadrant) {
-    uint32_t odd = 0u - (quadrant & 1u), swapped = (fm_bits(s) ^ fm_bits(c)) & odd;
-    return (fm_pair){fm_from_bits(fm_bits(s) ^ swapped ^ (quadrant << 30 & 0x80000000u)),
-                     fm_from_bits(fm_bits(c) ^ swapped ^ ((quadrant + 1u) << 30 & 0x80000000u))};
+    int odd = (quadrant & 1u) != 0u;
+    float sine = odd ? c : s, cosine = odd ? s : c;
+    return (fm_pair){fm_from_bits(fm_bits(sine) ^ (quadrant << 30 & 0x80000000u)),
+                     fm_from_bits(fm_bits(cosine) ^ ((quadrant + 1u) << 30 & 0x80000000u))};
 }
 
 /* |x| ≤ 256: 2.5 ulp. Beyond, infinities included: NaN. sin(±0) is +0. */

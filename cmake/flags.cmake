@@ -8,6 +8,10 @@ target_compile_options(kiln_flags INTERFACE
   -Wall -Wextra -Wshadow -Wundef -Wpointer-arith -Wvla
   $<$<COMPILE_LANGUAGE:C>:-Wconversion -Wstrict-prototypes -Wmissing-prototypes -Werror=switch-enum>
   $<$<BOOL:${KILN_WERROR}>:-Werror>)
+if(CMAKE_C_COMPILER_ID STREQUAL GNU)
+  # gcc 14 merges chains of selects into one node of five edges, and by default turns at most four back into selects.
+  target_compile_options(kiln_flags INTERFACE --param=max-tree-if-conversion-phi-args=8)
+endif()
 target_link_libraries(kiln_flags INTERFACE m Threads::Threads)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_compile_options(kiln_flags INTERFACE -march=x86-64-v2)

@@ -8,7 +8,7 @@ foreach(set "x86-64-v2 16" "x86-64-v3 32" "x86-64-v4 64")
   list(GET set 1 bytes)
   execute_process(
     COMMAND ${COMPILER} -std=gnu11 -O3 -march=${march} -ffp-contract=off -fno-math-errno -fno-trapping-math
-      -fopt-info-vec-optimized -I${SOURCE} -I${FOLDER} -c ${FOLDER}/fmath_loops.c -o fmath_loops.${march}.o
+      --param=max-tree-if-conversion-phi-args=8 -fopt-info-vec-optimized -I${SOURCE} -I${FOLDER} -c ${FOLDER}/fmath_loops.c -o fmath_loops.${march}.o
     ERROR_VARIABLE log RESULT_VARIABLE status)
   string(REGEX MATCHALL "loop vectorized using ${bytes} byte" loops "${log}")
   list(LENGTH loops found)
