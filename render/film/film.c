@@ -42,6 +42,20 @@ static bool check(const kiln_film_desc *d, kiln_report *report) {
     return true;
 }
 
+static uint64_t bytes_per_pixel(uint32_t aovs) {
+    uint64_t each = sizeof(film_pixel) + sizeof(uint32_t);
+    if (aovs & (1u << KILN_AOV_ALPHA | 1u << KILN_AOV_DEPTH)) each += sizeof(uint32_t);
+    for (int a = 0; a < KILN_AOV_COUNT; a++)
+        if (aovs & 1u << a && is_summed(a)) each += aov_rows[a].channels * sizeof(fixed);
+    return each;
+}
+
+uint64_t kiln_film_size(const kiln_film_desc *d) {
+    bool cropped = d->crop[2] > d->crop[0] && d->crop[3] > d->crop[1];
+    uint64_t width = cropped ? d->crop[2] - d->crop[0] : d->width, height = cropped ? d->crop[3] - d->crop[1] : d->height;
+    return width * height * bytes_per_pixel(d->aovs);
+}
+
 bool kiln_film_create(const kiln_film_desc *desc, kiln_film **film, kiln_report *report) {
     *film = NULL;
     kiln_film_desc d = *desc;
@@ -142,9 +156,4 @@ uint32_t kiln_film_spp(const kiln_film *f) {
     return least;
 }
 
-size_t kiln_film_bytes(const kiln_film *f) {
-    size_t pixels = (size_t)f->width * f->height, each = sizeof *f->pixels + sizeof *f->counts;
-    if (f->hits) each += sizeof *f->hits;
-    for (int a = 0; a < KILN_AOV_COUNT; a++) each += f->aovs[a] ? aov_rows[a].channels * sizeof(fixed) : 0;
-    return pixels * each;
-}
+size_t kiln_film_bytes(const kiln_film *f) { return (size_t)kiln_film_size(&f->desc); }

@@ -16,8 +16,8 @@ static picture furnace(float albedo, const kiln_render_options *options) {
     kiln_material m = diffuse_material(albedo, albedo, albedo);
     for (int k = 0; k < 3; k++) m.emission.value[k] = 1;
     add_sphere(&b, add_material(&b, &m), origin, 1, 32, SPHERE_INWARD | SPHERE_FLAT);
-    kiln_camera camera = camera_at(origin, ahead, 70);
-    picture p = render(&b, &camera, options, 32, 32);
+    kiln_camera view = camera_at(origin, ahead, 70);
+    picture p = render(&b, &view, options, 16, 16);
     builder_free(&b);
     return p;
 }
@@ -30,13 +30,11 @@ static void sees_two(void **state) {
     for (int e = 0; e < 3; e++)
         for (int s = 0; s < 2; s++)
             for (int c = 0; c < 2; c++) {
-                kiln_render_options o = {.spp = 256, .estimator = estimators[e], .sampler = samplers[s],
+                kiln_render_options o = {.spp = 128, .estimator = estimators[e], .sampler = samplers[s],
                                          .light_sampling = choices[c], .roulette = {.kind = KILN_ROULETTE_OFF}};
                 picture p = furnace(0.5f, &o);
-                print_message("estimator %d sampler %d lights %d: %.5f ± %.5f, rays %llu %llu %llu, %.2f s, lost %.2g\n", e, s, c, p.mean, p.mean_error,
-                              (unsigned long long)p.stats.camera_rays, (unsigned long long)p.stats.bounce_rays,
-                              (unsigned long long)p.stats.shadow_rays, p.stats.seconds, p.stats.lost_energy);
-                assert_true(fabs(p.mean - 2) < 3.9 * p.mean_error + 1e-5); /* 1 in 10,000 */
+                if (fabs(p.mean - 2) > 3.9 * p.mean_error + 1e-5) /* 1 in 10,000 */
+                    fail_msg("estimator %d, sampler %d, lights %d: %.5f ± %.5f", e, s, c, p.mean, p.mean_error);
                 picture_free(&p);
             }
 }

@@ -1,0 +1,46 @@
+/* tests/render/bsdf_cases.h: every kind of material that the BSDF knows, one row each, and how it is asked. */
+#ifndef KILN_TESTS_RENDER_BSDF_CASES_H
+#define KILN_TESTS_RENDER_BSDF_CASES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "render/bsdf/bsdf.h"
+
+/* A material, and the side that it is seen from. */
+typedef struct bsdf_case {
+    const char *name;
+    unsigned mask;
+    float metallic, specular, ior /* 0: infinite */, transmission;
+    bool thin, inside;
+    bool white; /* nothing is absorbed: what comes in goes out */
+    vec3 base, specular_color;
+} bsdf_case;
+
+extern const bsdf_case bsdf_cases[];
+extern const size_t bsdf_case_count;
+
+/* The BSDF of a case at a roughness, seen from wo (local frame, wo.z > 0). The mask is a constant inside, as in the
+ * renderer. */
+typedef struct probe {
+    unsigned mask;
+    surface surface;
+    bsdf bsdf;
+    const float *slices;
+} probe;
+
+probe probe_make(const bsdf_case *, float roughness, vec3 wo);
+/* The same surface seen from wi, in the local frame of wi's side; below the surface z is turned over. */
+probe probe_reverse(const probe *, vec3 wi);
+bsdf_value probe_evaluate(const probe *, vec3 wi);
+bsdf_sampled probe_sample(const probe *, float lobe, vec2 direction);
+vec3 probe_albedo(const probe *);
+
+/* Radiance that crosses into the far side is squeezed by this: η² for a solid, else 1. */
+static inline double probe_squeeze(const probe *p) {
+    return p->mask & BSDF_TRANSMISSIVE && p->surface.thin < 0.5f ? (double)p->surface.eta * (double)p->surface.eta : 1;
+}
+/* wo at cos θ and an azimuth in turns. */
+vec3 direction_at(double cosine, double turns);
+
+#endif
