@@ -39,7 +39,8 @@ static void check_lens(kiln_camera *c, const kiln_where *where, kiln_report *rep
             *rows[i].value = 0;
         }
     if (c->blades == 1 || c->blades == 2) {
-        report_warning(report, KILN_CODE_RANGE, where, NULL, "%u blades enclose nothing: the aperture is round", c->blades);
+        report_warning(report, KILN_CODE_RANGE, where, NULL, "%u blades enclose nothing: the aperture is round",
+                       c->blades);
         c->blades = 0;
     }
     if (!isfinite(c->blade_rotation_rad)) {

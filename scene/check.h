@@ -24,7 +24,8 @@ float check_factor(float value, float low, float high, float fallback, const cha
 bool check_transform(double m[16], const kiln_where *, kiln_report *);
 
 /* id is 0, if none is allowed, or one of count objects; else an error: "image 9 does not exist (the scene has 2)". */
-bool check_reference(kiln_id id, uint32_t count, bool none_allowed, const char *noun, const kiln_where *, kiln_report *);
+bool check_reference(kiln_id id, uint32_t count, bool none_allowed, const char *noun, const kiln_where *,
+                     kiln_report *);
 
 /* value < count, for an enumeration that a caller may have filled with anything. */
 bool check_choice(unsigned value, unsigned count, const char *name, const kiln_where *, kiln_report *);

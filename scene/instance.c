@@ -20,7 +20,8 @@ bool kiln_scene_add_instance(kiln_scene *scene, const kiln_instance_desc *desc, 
     if (!check_open(scene, &place.where, report) ||
         !check_reference(desc->mesh, scene->mesh_count, false, "mesh", &place.where, report))
         return false;
-    kiln_instance instance = {.mesh = desc->mesh, .time_count = desc->time_count && desc->transforms ? desc->time_count : 1};
+    bool moves = desc->time_count > 1 && desc->transforms;
+    kiln_instance instance = {.mesh = desc->mesh, .time_count = moves ? desc->time_count : 1};
     if (instance.time_count > TIMES_MAX)
         return report_error(report, KILN_CODE_LIMIT, &place.where, "sample the motion more coarsely",
                             "%u time samples (at most %d)", instance.time_count, TIMES_MAX);

@@ -14,8 +14,10 @@ kiln_light kiln_light_default(void) {
 
 static void check_cone(kiln_light *light, const kiln_where *where, kiln_report *report) {
     const float right_angle = 1.57079633f;
-    light->outer_cone_rad = check_factor(light->outer_cone_rad, 0, right_angle, right_angle / 2, "outer_cone_rad", where, report);
-    light->inner_cone_rad = check_factor(light->inner_cone_rad, 0, light->outer_cone_rad, 0, "inner_cone_rad", where, report);
+    light->outer_cone_rad = check_factor(light->outer_cone_rad, 0, right_angle, right_angle / 2, "outer_cone_rad",
+                                         where, report);
+    light->inner_cone_rad = check_factor(light->inner_cone_rad, 0, light->outer_cone_rad, 0, "inner_cone_rad", where,
+                                         report);
 }
 
 bool kiln_scene_add_light(kiln_scene *scene, const kiln_light *desc, kiln_id *id, kiln_report *report) {
@@ -23,7 +25,8 @@ bool kiln_scene_add_light(kiln_scene *scene, const kiln_light *desc, kiln_id *id
     place_set(&place, scene, "light", desc->name, (size_t)scene->light_count + 1);
     const kiln_where *where = &place.where;
     kiln_light light = *desc;
-    if (!check_open(scene, where, report) || !check_choice(light.kind, KILN_LIGHT_DISTANT + 1, "light kind", where, report) ||
+    if (!check_open(scene, where, report) ||
+        !check_choice(light.kind, KILN_LIGHT_DISTANT + 1, "light kind", where, report) ||
         !check_transform(light.transform, where, report))
         return false;
     for (int k = 0; k < 3; k++) light.color[k] = check_factor(light.color[k], 0, FLT_MAX, 1, "color", where, report);

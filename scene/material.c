@@ -90,7 +90,8 @@ static bool check_parameters(kiln_material *m, const kiln_scene *scene, const ki
         bool radiance = i == 0 && (m->layers & KILN_LAYER_UNLIT);
         for (int k = 0; k < p->width; k++) {
             float *value = &values_of(m, p)[k];
-            *value = check_factor(*value, p->low, radiance ? FLT_MAX : p->high, p->fallback, "the factor", &here, report);
+            *value = check_factor(*value, p->low, radiance ? FLT_MAX : p->high, p->fallback, "the factor", &here,
+                                  report);
         }
         if (!check_texture((kiln_texture *)((char *)m + texture_offset(p)), scene, &here, report)) return false;
     }
@@ -101,7 +102,8 @@ static void check_constants(kiln_material *m, const kiln_where *where, kiln_repo
     m->alpha_cutoff = check_factor(m->alpha_cutoff, 0, FLT_MAX, 0.5f, "alpha_cutoff", where, report);
     if (m->ior != 0) m->ior = check_factor(m->ior, 1, FLT_MAX, 1.5f, "ior", where, report);
     if (isinf(m->attenuation_distance) && m->attenuation_distance > 0) m->attenuation_distance = 0;
-    m->attenuation_distance = check_factor(m->attenuation_distance, 0, FLT_MAX, 0, "attenuation_distance", where, report);
+    m->attenuation_distance = check_factor(m->attenuation_distance, 0, FLT_MAX, 0, "attenuation_distance", where,
+                                           report);
     for (int k = 0; k < 3; k++)
         m->attenuation_color[k] =
             check_factor(m->attenuation_color[k], 0, 1, 1, "attenuation_color", where, report);

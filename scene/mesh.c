@@ -39,7 +39,8 @@ static bool build_positions(mesh_builder *b) {
         for (int k = 0; k < 3; k++) {
             float x = m->positions[3 * i + (size_t)k];
             if (!isfinite(x))
-                return report_error(b->report, KILN_CODE_GEOMETRY, b->where, "repair the mesh in the tool that wrote it",
+                return report_error(b->report, KILN_CODE_GEOMETRY, b->where,
+                                    "repair the mesh in the tool that wrote it",
                                     "vertex %zu has a position that is not finite", i % m->vertex_count);
             if (x < m->min[k]) m->min[k] = x;
             if (x > m->max[k]) m->max[k] = x;
@@ -114,18 +115,20 @@ static bool build_materials(mesh_builder *b) {
 static bool build(mesh_builder *b) {
     b->mesh->name = arena_string(&b->mesh->arena, b->desc->name);
     bool ok = b->mesh->name || report_no_memory(b->report, "building a mesh");
-    ok = ok && build_positions(b) && build_faces(b) && build_corners(b) && build_materials(b) && mesh_build_primvars(b) &&
-         mesh_build_tags(b);
+    ok = ok && build_positions(b) && build_faces(b) && build_corners(b) && build_materials(b) &&
+         mesh_build_primvars(b) && mesh_build_tags(b);
     if (!ok) arena_free(&b->mesh->arena);
     return ok;
 }
 
 /* Builds the mesh in mesh->arena, which already holds the description's arrays where adopt is set. */
-static bool add(kiln_scene *scene, kiln_mesh *mesh, const kiln_mesh_desc *desc, bool adopt, kiln_id *id, kiln_report *report) {
+static bool add(kiln_scene *scene, kiln_mesh *mesh, const kiln_mesh_desc *desc, bool adopt, kiln_id *id,
+                kiln_report *report) {
     scene_place place;
     place_set(&place, scene, "mesh", desc->name, (size_t)scene->mesh_count + 1);
     mesh_builder b = {scene, desc, mesh, adopt, &place.where, report};
-    if (!check_open(scene, &place.where, report) || !array_room((void **)&scene->meshes, scene->mesh_count, sizeof *mesh, report)) {
+    if (!check_open(scene, &place.where, report) ||
+        !array_room((void **)&scene->meshes, scene->mesh_count, sizeof *mesh, report)) {
         arena_free(&mesh->arena);
         return false;
     }
@@ -140,13 +143,15 @@ bool kiln_scene_add_mesh(kiln_scene *scene, const kiln_mesh_desc *desc, kiln_id 
     return add(scene, &mesh, desc, false, id, report);
 }
 
-bool scene_adopt_mesh(kiln_scene *scene, kiln_arena *arena, const kiln_mesh_desc *desc, kiln_id *id, kiln_report *report) {
+bool scene_adopt_mesh(kiln_scene *scene, kiln_arena *arena, const kiln_mesh_desc *desc, kiln_id *id,
+                      kiln_report *report) {
     kiln_mesh mesh = {.arena = *arena};
     *arena = (kiln_arena){0};
     return add(scene, &mesh, desc, true, id, report);
 }
 
-bool scene_replace_mesh(kiln_scene *scene, kiln_id id, kiln_arena *arena, const kiln_mesh_desc *desc, kiln_report *report) {
+bool scene_replace_mesh(kiln_scene *scene, kiln_id id, kiln_arena *arena, const kiln_mesh_desc *desc,
+                        kiln_report *report) {
     scene_place place;
     place_set(&place, scene, "mesh", desc->name, id);
     kiln_mesh mesh = {.arena = *arena};

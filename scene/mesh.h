@@ -11,7 +11,8 @@ typedef struct kiln_mesh {
     const char *name;
     uint32_t vertex_count, time_count /* ≥ 1 */, face_count, corner_count, triangle_count;
     const float *positions;        /* time_count × vertex_count × 3, finite */
-    const uint32_t *face_offsets;  /* face f has the corners face_offsets[f] … face_offsets[f + 1] − 1; NULL: triangles */
+    const uint32_t *face_offsets;  /* face f has the corners from face_offsets[f] to before face_offsets[f + 1]; NULL:
+                                      triangles */
     const uint32_t *face_vertices; /* one per corner */
     const kiln_primvar *primvars;
     uint32_t primvar_count;

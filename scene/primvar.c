@@ -81,7 +81,8 @@ static void mend_values(mesh_builder *b, const kiln_primvar *p, float *values, c
         report_warning(b->report, KILN_CODE_GEOMETRY, where, NULL, "%u of %u values are not finite: %s", lost,
                        p->value_count, p->kind == KILN_PRIMVAR_COLOR ? "white is used" : "zero is used");
     if (clamped)
-        report_warning(b->report, KILN_CODE_GEOMETRY, where, NULL, "%u of %u values lie outside their domain: %s", clamped,
+        report_warning(b->report, KILN_CODE_GEOMETRY, where, NULL, "%u of %u values lie outside their domain: %s",
+                       clamped,
                        p->value_count,
                        p->kind == KILN_PRIMVAR_COLOR ? "clamped to [0, 1]" : "the handedness is taken by its sign");
 }

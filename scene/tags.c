@@ -40,7 +40,8 @@ static bool build_sharp(mesh_builder *b, const char *what, uint32_t per_tag, con
 
 static bool build_holes(mesh_builder *b, kiln_subdivision *s) {
     if (s->hole_count && !s->holes)
-        return report_error(b->report, KILN_CODE_USAGE, b->where, NULL, "the array of %u holes is missing", s->hole_count);
+        return report_error(b->report, KILN_CODE_USAGE, b->where, NULL, "the array of %u holes is missing",
+                            s->hole_count);
     uint32_t *holes = ARENA_ARRAY(&b->mesh->arena, uint32_t, s->hole_count);
     if (!holes) return report_no_memory(b->report, "building a mesh");
     uint32_t n = 0;

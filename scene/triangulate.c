@@ -55,8 +55,12 @@ typedef struct ring {
 
 static double turn(point2 a, point2 b, point2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
+static double turn_at(const ring *r, uint32_t i) {
+    return turn(r->points[r->previous[i]], r->points[i], r->points[r->next[i]]);
+}
+
 static void classify(ring *r, uint32_t i) {
-    bool reflex = turn(r->points[r->previous[i]], r->points[i], r->points[r->next[i]]) <= 0;
+    bool reflex = turn_at(r, i) <= 0;
     r->reflex_left = r->reflex_left + reflex - r->reflex[i];
     r->reflex[i] = reflex;
 }
@@ -90,26 +94,30 @@ static void cut(ring *r, uint32_t i) {
     classify(r, after);
 }
 
-/* Ear clipping (Meisters 1975). A polygon that crosses itself or has no area may run out of ears: then the next
- * corner is cut regardless, so that n − 2 triangles always come out. */
+/* The corner to cut next, at i or behind it: an ear (Meisters 1975). A polygon that touches or crosses itself, or has
+ * no area, may run out of ears; then, of the corners that do not turn left, the one that turns right the least: where
+ * the polygon runs back along itself, nothing is lost. */
+static uint32_t choose(ring *r, uint32_t i) {
+    uint32_t best = i;
+    double best_turn = -INFINITY;
+    for (uint32_t tried = 0; tried < r->left && spend(r); tried++, i = r->next[i]) {
+        if (is_ear(r, i)) return i;
+        double t = r->reflex[i] ? turn_at(r, i) : -INFINITY;
+        if (t > best_turn) best_turn = t, best = i;
+    }
+    return best;
+}
+
 static void clip_ears(ring *r, uint32_t first, uint32_t *corners) {
-    uint32_t i = 0, tried = 0;
-    while (r->left > 3) {
-        if (!is_ear(r, i) && tried < r->left && spend(r)) {
-            i = r->next[i];
-            tried++;
-            continue;
-        }
+    for (uint32_t i = 0;;) {
+        i = r->left > 3 ? choose(r, i) : i;
         *corners++ = first + r->previous[i];
         *corners++ = first + i;
         *corners++ = first + r->next[i];
+        if (r->left == 3) return;
         cut(r, i);
         i = r->next[r->next[i]]; /* skip one: strips and fans both give slivers */
-        tried = 0;
     }
-    *corners++ = first + r->previous[i];
-    *corners++ = first + i;
-    *corners++ = first + r->next[i];
 }
 
 /* Into the plane across the vector area (Newell's normal), where the polygon winds counter-clockwise. */
@@ -139,7 +147,8 @@ static void split_polygon(const kiln_mesh *m, uint32_t first, uint32_t size, rin
 
 static uint32_t largest_face(const kiln_mesh *m) {
     uint32_t largest = 0;
-    for (uint32_t f = 0; f < m->face_count; f++) largest = mesh_face_size(m, f) > largest ? mesh_face_size(m, f) : largest;
+    for (uint32_t f = 0; f < m->face_count; f++)
+        if (mesh_face_size(m, f) > largest) largest = mesh_face_size(m, f);
     return largest;
 }
 
@@ -154,9 +163,9 @@ static void split_face(const kiln_mesh *m, uint32_t f, ring *r, uint32_t *corner
 bool mesh_triangulate(const kiln_mesh *m, uint32_t *corners, uint32_t *faces) {
     uint32_t largest = largest_face(m);
     size_t room = largest > 4 ? largest : 1;
-    /* A fraction of a second: n² steps cut any polygon of 8,000 corners. What is left of a larger hostile one is cut
+    /* A fraction of a second: n² steps cut any polygon of 5,000 corners. What is left of a larger hostile one is cut
      * as it comes. */
-    ring r = {.budget = (uint64_t)1 << 26,
+    ring r = {.budget = (uint64_t)1 << 25,
               .points = array_alloc(room, sizeof *r.points),
               .next = array_alloc(room, sizeof *r.next),
               .previous = array_alloc(room, sizeof *r.previous),

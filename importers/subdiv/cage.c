@@ -68,7 +68,8 @@ static bool take_faces(builder *b) {
     rules->scheme = wanted_scheme(b);
     b->cage->quad_rate = 1;
     bool triangles_alone = m->subdivision.scheme == KILN_SCHEME_NONE && !m->face_offsets;
-    b->rebuilt = rules->triangulated || rules->fan_encoded || m->subdivision.scheme == KILN_SCHEME_AUTO || triangles_alone;
+    b->rebuilt = rules->triangulated || rules->fan_encoded || triangles_alone ||
+                 m->subdivision.scheme == KILN_SCHEME_AUTO;
     if (!weld_vertices(m, b->rebuilt, &b->temporary, &b->weld)) return no_memory(b);
     if (rules->scheme == KILN_SCHEME_LOOP && m->face_offsets) {
         if (!faces_triangulate(m, &b->weld, &b->temporary, &b->faces)) return no_memory(b);
@@ -98,7 +99,8 @@ static bool check_limits(builder *b) {
             return OBSTACLE(b, "face %u has %u corners (at most %d)", f->sources[i], f->sizes[i], CAGE_VALENCE_MAX);
         for (uint32_t end = c + f->sizes[i]; c < end; c++)
             if (++valences[f->points[c]] > CAGE_VALENCE_MAX)
-                return OBSTACLE(b, "vertex %u belongs to more than %d faces", b->weld.sources[f->points[c]], CAGE_VALENCE_MAX);
+                return OBSTACLE(b, "vertex %u belongs to more than %d faces", b->weld.sources[f->points[c]],
+                                CAGE_VALENCE_MAX);
     }
     return true;
 }
@@ -117,7 +119,8 @@ static bool copy_cage(builder *b) {
     c->corner_sources = arena_copy(b->arena, f->corners, f->corner_count, sizeof *f->corners);
     c->vertex_sources = arena_copy(b->arena, b->weld.sources, b->weld.count, sizeof *b->weld.sources);
     float *positions = arena_array(b->arena, (size_t)c->time_count * c->vertex_count, 3 * sizeof *positions);
-    if (!c->face_sizes || !c->face_vertices || !c->face_sources || !c->corner_sources || !c->vertex_sources || !positions)
+    if (!c->face_sizes || !c->face_vertices || !c->face_sources || !c->corner_sources || !c->vertex_sources ||
+        !positions)
         return no_memory(b);
     c->positions = positions;
     for (uint32_t t = 0; t < c->time_count; t++)
@@ -138,14 +141,15 @@ static bool tag_cage(builder *b) {
                             tags_crease_angle(b->cage, &edges, b->options->crease_angle_rad, sharpness, &b->temporary));
     if (!ok || !tags_apply(b->mesh, &b->weld, &edges, sharpness, b->arena, b->cage)) return no_memory(b);
     if (lost)
-        report_warning(b->report, KILN_CODE_GEOMETRY, b->where, NULL, "%u creases follow no edge of the mesh: left out", lost);
+        report_warning(b->report, KILN_CODE_GEOMETRY, b->where, NULL, "%u creases follow no edge of the mesh: left out",
+                       lost);
     return channels_collect(b->mesh, b->rebuilt, b->arena, b->cage) || no_memory(b);
 }
 
-bool cage_build(const kiln_mesh *mesh, const cage_options *options, kiln_arena *arena, kiln_cage *cage, char obstacle[160],
-                const kiln_where *where, kiln_report *report) {
-    builder b = {.mesh = mesh, .options = options, .arena = arena, .cage = cage, .obstacle = obstacle, .where = where,
-                 .report = report};
+bool cage_build(const kiln_mesh *mesh, const cage_options *options, kiln_arena *arena, kiln_cage *cage,
+                char obstacle[160], const kiln_where *where, kiln_report *report) {
+    builder b = {.mesh = mesh, .options = options, .arena = arena, .cage = cage, .obstacle = obstacle,
+                 .where = where, .report = report};
     *cage = (kiln_cage){0};
     obstacle[0] = '\0';
     bool ok = take_faces(&b) && check_limits(&b) && copy_cage(&b) && tag_cage(&b);

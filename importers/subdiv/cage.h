@@ -44,8 +44,8 @@ typedef struct cage_options {
 
 /* Reads mesh, allocates in arena. False without an error when the topology cannot be refined: then *obstacle says
  * why ("face 7 has 70000 corners (at most 4096)"); with an error when memory ran out. */
-bool cage_build(const struct kiln_mesh *, const cage_options *, kiln_arena *, kiln_cage *, char obstacle[160], const kiln_where *,
-                kiln_report *);
+bool cage_build(const struct kiln_mesh *, const cage_options *, kiln_arena *, kiln_cage *, char obstacle[160],
+                const kiln_where *, kiln_report *);
 
 /* Faces and triangles after `level` refinements; saturates at UINT64_MAX / 4. */
 uint64_t cage_refined_faces(const kiln_cage *, uint32_t level);

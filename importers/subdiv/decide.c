@@ -39,7 +39,8 @@ static dvec3 authored_point(const comparison *c, uint32_t corner) {
 }
 static dvec3 authored_normal(const comparison *c, uint32_t face, uint32_t corner) {
     uint32_t source = c->cage->corner_sources[corner];
-    return d3_normalize(load(primvar_at(c->normals, c->cage->face_sources[face], source, c->mesh->face_vertices[source])));
+    uint32_t source_face = c->cage->face_sources[face], vertex = c->mesh->face_vertices[source];
+    return d3_normalize(load(primvar_at(c->normals, source_face, source, vertex)));
 }
 
 static dvec3 limit_point(const comparison *c, uint32_t corner) {
@@ -122,7 +123,8 @@ static double quantile(float *values, uint32_t count, double share) {
 
 bool smoothness_measure(const kiln_mesh *m, const kiln_cage *cage, const osd_surface *once, smoothness *result) {
     comparison c = {.mesh = m, .normals = mesh_primvar(m, KILN_PRIMVAR_NORMAL, 0), .cage = cage, .once = once};
-    samples s = {.angles = array_alloc(cage->corner_count, sizeof(float)), .deviations = array_alloc(cage->corner_count, sizeof(float))};
+    samples s = {.angles = array_alloc(cage->corner_count, sizeof(float)),
+                 .deviations = array_alloc(cage->corner_count, sizeof(float))};
     polygons p = {cage->vertex_count, cage->face_count, cage->corner_count, cage->face_sizes, cage->face_vertices};
     kiln_arena arena = {0};
     bool ok = s.angles && s.deviations && edges_build(&p, &arena, &c.edges) && measure_split(&c, &result->split);
@@ -154,14 +156,16 @@ bool smoothness_decide(const smoothness *s, char reason[160]) {
     else if (s->bulge > BULGE_MAX)
         text_format(&text, "too coarse to tell: rounding it off would move it by %.1f %% of its size", 100 * s->bulge);
     else if (s->deviation > DEVIATION_MAX || s->deviation_max > DEVIATION_WORST)
-        text_format(&text, "refining would deform it: by %.2f %% of its size at the worst place", 100 * s->deviation_max);
+        text_format(&text, "refining would deform it: by %.2f %% of its size at the worst place",
+                    100 * s->deviation_max);
     else if (s->slide > SLIDE_MAX)
-        text_format(&text, "refining would stretch its textures: by %.2f %% of its size at the worst place", 100 * s->slide);
+        text_format(&text, "refining would stretch its textures: by %.2f %% of its size at the worst place",
+                    100 * s->slide);
     else if (s->normal_rad > NORMAL_MAX_RAD)
         text_format(&text, "not evidently smooth: authored normals are up to %.1f° off the limit's", degrees);
     else {
-        text_format(&text, "smooth: authored normals agree with the limit within %.1f°, positions within %.3f %% of its size",
-                    degrees, 100 * s->deviation_max);
+        text_format(&text, "smooth: authored normals agree with the limit within %.1f°, positions within %.3f %% of "
+                           "its size", degrees, 100 * s->deviation_max);
         smooth = true;
     }
     snprintf(reason, 160, "%s", text.data ? text.data : "");

@@ -11,7 +11,7 @@
 
 /* Lengths are shares of the diagonal of the mesh's bounds. */
 typedef struct smoothness {
-    double split;         /* share of the points at which authored normals are missing or differ by more than a degree */
+    double split;         /* share of the points whose authored normals are missing, or differ by more than a degree */
     double normal_rad;    /* between authored and limit normals; 99 % of the corners stay under it */
     double deviation;     /* of the limit from the promised surface; 99 % of the places stay under it */
     double deviation_max; /* at the worst place */

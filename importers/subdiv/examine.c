@@ -42,7 +42,8 @@ static bool build_cage(const subject *s, kiln_scheme scheme, bool *error) {
     if (!obstacle[0]) return !(*error = true);
     say(s, obstacle);
     if (!is_automatic(s))
-        report_warning(s->x->report, KILN_CODE_GEOMETRY, s->where, "repair the mesh", "it cannot be subdivided: %s", obstacle);
+        report_warning(s->x->report, KILN_CODE_GEOMETRY, s->where, "repair the mesh", "it cannot be subdivided: %s",
+                       obstacle);
     return false;
 }
 
@@ -61,7 +62,8 @@ static bool try_cage(const subject *s) {
     kiln_cage *cage = &s->plan->cage;
     bool ok = osd_fit(cage, &s->plan->arena, s->where, s->x->report) &&
               osd_refine(cage, 1, &temporary, &once, s->where, s->x->report);
-    if (ok && !smoothness_measure(s->mesh, cage, &once, &measured)) ok = report_no_memory(s->x->report, "subdividing a mesh");
+    if (ok && !smoothness_measure(s->mesh, cage, &once, &measured))
+        ok = report_no_memory(s->x->report, "subdividing a mesh");
     if (ok && smoothness_decide(&measured, s->plan->result->reason)) {
         s->plan->result->refined = true;
         ok = choose_level(s, &once);
@@ -80,7 +82,8 @@ static bool examine_automatic(const subject *s) {
         if (pixels <= 1) return say(s, "its edges are not longer than a pixel"), true;
     }
     if (!try_cage(s)) return false;
-    bool settled = row->refined || (s->x->options->scheme != KILN_SCHEME_NONE && s->x->options->scheme != KILN_SCHEME_AUTO);
+    kiln_scheme asked = s->x->options->scheme;
+    bool settled = row->refined || (asked != KILN_SCHEME_NONE && asked != KILN_SCHEME_AUTO);
     if (settled || s->mesh->face_offsets) return true;
     kiln_subdivision_result first = *row;
     kiln_scheme other = first.scheme == KILN_SCHEME_LOOP ? KILN_SCHEME_CATMULL_CLARK : KILN_SCHEME_LOOP;

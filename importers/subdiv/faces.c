@@ -56,7 +56,8 @@ bool faces_triangulate(const kiln_mesh *m, const vertex_weld *w, kiln_arena *are
                      .corners = ARENA_ARRAY(arena, uint32_t, corner_count),
                      .sources = ARENA_ARRAY(arena, uint32_t, m->triangle_count),
                      .points = ARENA_ARRAY(arena, uint32_t, corner_count)};
-    if (!f->sizes || !f->corners || !f->sources || !f->points || !mesh_triangulate(m, f->corners, f->sources)) return false;
+    bool room = f->sizes && f->corners && f->sources && f->points;
+    if (!room || !mesh_triangulate(m, f->corners, f->sources)) return false;
     for (uint32_t t = 0; t < f->face_count; t++) f->sizes[t] = 3;
     for (uint32_t c = 0; c < corner_count; c++) f->points[c] = w->map[m->face_vertices[f->corners[c]]];
     return true;

@@ -39,7 +39,7 @@ bool faces_join_fans(const kiln_mesh *, const vertex_weld *, kiln_arena *, face_
 
 /* Pairs consecutive triangles into quads where they look like the halves of one; *rate is the share of triangles
  * that found a partner. keep_edges: one byte per edge, not 0 where the edge must stay. */
-bool faces_pair(const kiln_mesh *, const vertex_weld *, const face_list *triangles, const edge_table *, const uint8_t *keep_edges,
-                kiln_arena *, face_list *, double *rate);
+bool faces_pair(const kiln_mesh *, const vertex_weld *, const face_list *triangles, const edge_table *,
+                const uint8_t *keep_edges, kiln_arena *, face_list *, double *rate);
 
 #endif

@@ -5,14 +5,15 @@
 #include "importers/subdiv/tags.h"
 
 /* The keys of corners: point, and either the mesh's own value index or the value itself. */
-static bool number_corners(const kiln_cage *c, const kiln_primvar *p, const float *values, bool by_index, uint32_t *indices,
-                           uint32_t *count) {
+static bool number_corners(const kiln_cage *c, const kiln_primvar *p, const float *values, bool by_index,
+                           uint32_t *indices, uint32_t *count) {
     float *points = array_alloc(c->corner_count, sizeof *points), *own = array_alloc(c->corner_count, sizeof *own);
     bool ok = points && own;
     if (ok) {
         /* Integers keep their bits: topology_weld compares bits, and no number of vertices reaches the bits of −0. */
         memcpy(points, c->face_vertices, c->corner_count * sizeof *points);
-        for (uint32_t k = 0; by_index && k < c->corner_count; k++) memcpy(&own[k], &p->indices[c->corner_sources[k]], sizeof *own);
+        for (uint32_t k = 0; by_index && k < c->corner_count; k++)
+            memcpy(&own[k], &p->indices[c->corner_sources[k]], sizeof *own);
         corner_stream streams[2] = {{points, 1}, {by_index ? own : values, by_index ? 1 : primvar_width(p->kind)}};
         ok = topology_weld(streams, 2, c->corner_count, indices, count);
     }
@@ -32,7 +33,8 @@ static void gather(const kiln_mesh *m, const kiln_cage *c, const kiln_primvar *p
         }
 }
 
-static bool collect_corners(const kiln_mesh *m, const kiln_cage *c, const kiln_primvar *p, kiln_arena *arena, cage_channel *out) {
+static bool collect_corners(const kiln_mesh *m, const kiln_cage *c, const kiln_primvar *p, kiln_arena *arena,
+                            cage_channel *out) {
     uint32_t width = primvar_width(p->kind);
     uint32_t *indices = ARENA_ARRAY(arena, uint32_t, c->corner_count);
     float *all = array_alloc(c->corner_count, width * sizeof *all), *kept = NULL;

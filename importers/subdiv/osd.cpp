@@ -83,9 +83,11 @@ class Refinement {
             for (int round = 0; round < rounds; round++) {
                 std::vector<Point> control = descend_vertices<Point>(points[t * n].x);
                 primvar.Limit(control, limit);
-                for (size_t v = 0; v < n; v++)
-                    for (int k = 0; k < 3; k++)
-                        points[t * n + v].x[k] += c->positions[3 * (t * n + v) + size_t(k)] - limit[size_t(child_vertex(int(v)))].x[k];
+                for (size_t v = 0; v < n; v++) {
+                    const float *goal = c->positions + 3 * (t * n + v);
+                    const Point &reached = limit[size_t(child_vertex(int(v)))];
+                    for (int k = 0; k < 3; k++) points[t * n + v].x[k] += goal[k] - reached.x[k];
+                }
             }
         return points->x;
     }
@@ -169,7 +171,9 @@ class Refinement {
     template <typename T> std::vector<T> descend_vertices(const float *values) const {
         Far::PrimvarRefiner primvar(*refiner);
         return descend<T>(values, [&](int l) { return refiner->GetLevel(l).GetNumVertices(); },
-                          [&](int l, const std::vector<T> &from, std::vector<T> &to) { primvar.Interpolate(l, from, to); });
+                          [&](int l, const std::vector<T> &from, std::vector<T> &to) {
+                              primvar.Interpolate(l, from, to);
+                          });
     }
     template <typename T> std::vector<T> descend_corners(const float *values, int channel) const {
         Far::PrimvarRefiner primvar(*refiner);
@@ -203,8 +207,10 @@ class Refinement {
         if (normals.values.size() == out->vertex_count) return;
         uint32_t *indices = allocate<uint32_t>(arena, kept.size() * out->face_size);
         out->normals.indices = indices;
-        for (int f : kept)
-            for (uint32_t k = 0; k < out->face_size; k++) *indices++ = normals.corner_values[size_t(f) * out->face_size + k];
+        for (int f : kept) {
+            const uint32_t *values_of_face = &normals.corner_values[size_t(f) * out->face_size];
+            for (uint32_t k = 0; k < out->face_size; k++) *indices++ = values_of_face[k];
+        }
     }
 
     void refine_channel(const cage_channel &channel, int &fvar, osd_values &values) {
@@ -216,7 +222,8 @@ class Refinement {
     template <typename T> void refine_values(const cage_channel &channel, int &fvar, osd_values &values) {
         Far::PrimvarRefiner primvar(*refiner);
         bool corners = channel.indices != nullptr;
-        std::vector<T> refined = corners ? descend_corners<T>(channel.values, fvar) : descend_vertices<T>(channel.values);
+        std::vector<T> refined =
+            corners ? descend_corners<T>(channel.values, fvar) : descend_vertices<T>(channel.values);
         T *limit = allocate<T>(arena, refined.size());
         if (corners) primvar.LimitFaceVarying(refined, limit, fvar);
         else primvar.Limit(refined, limit);
@@ -275,7 +282,8 @@ template <typename WORK> bool guarded(WORK work, const kiln_where *where, kiln_r
     } catch (const std::bad_alloc &) {
         return report_no_memory(report, "subdividing a mesh");
     } catch (const std::exception &e) {
-        return report_error(report, KILN_CODE_INTERNAL, where, "render with --subdivide off", "subdivision failed: %s", e.what());
+        return report_error(report, KILN_CODE_INTERNAL, where, "render with --subdivide off", "subdivision failed: %s",
+                            e.what());
     } catch (...) {
         return report_error(report, KILN_CODE_INTERNAL, where, "render with --subdivide off", "subdivision failed");
     }

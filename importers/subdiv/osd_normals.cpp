@@ -179,7 +179,8 @@ class Builder {
     Vector mean_normal(const Sector &s) const {
         Vector sum;
         for (int i : s.faces) {
-            Vector n = cross(difference(limit[corner(i, 1)], limit[vertex]), difference(limit[corner(i, face_size - 1)], limit[vertex]));
+            Vector n = cross(difference(limit[corner(i, 1)], limit[vertex]),
+                             difference(limit[corner(i, face_size - 1)], limit[vertex]));
             sum.x += n.x;
             sum.y += n.y;
             sum.z += n.z;

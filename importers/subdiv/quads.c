@@ -7,8 +7,6 @@
 /* Halves of a quad bend by no more than this: measured on exported models, 95 to 99 % of the pairs of a quad mesh
  * pass, and few of a triangle mesh. */
 static const double COS_BEND = 0.766; /* 40° */
-/* A quad's corner is neither a spike nor straight: 3°. */
-static const double SIN_CORNER = 0.052;
 
 typedef struct pairing {
     const kiln_mesh *mesh;
@@ -31,7 +29,8 @@ static bool same_values(const pairing *p, uint32_t corner_a, uint32_t corner_b) 
     for (uint32_t i = 0; i < m->primvar_count; i++) {
         const kiln_primvar *v = &m->primvars[i];
         if (v->kind == KILN_PRIMVAR_TANGENT) continue;
-        const float *a = primvar_at(v, corner_a / 3, corner_a, vertex_a), *b = primvar_at(v, corner_b / 3, corner_b, vertex_b);
+        const float *a = primvar_at(v, corner_a / 3, corner_a, vertex_a);
+        const float *b = primvar_at(v, corner_b / 3, corner_b, vertex_b);
         for (uint32_t k = 0; k < primvar_width(v->kind); k++)
             if (a[k] != b[k]) return false;
     }
@@ -65,7 +64,7 @@ static void quad_corners(const pairing *p, uint32_t t, uint32_t i, uint32_t corn
     corners[3] = 3 * (t + 1) + (there + 2) % 3;
 }
 
-/* How much triangles t and t + 1 look like a quad: 0 not at all, 1 a flat rectangle. */
+/* How much triangles t and t + 1 look like a quad: 0 or less not at all, 1 a flat rectangle. */
 static double likeness(const pairing *p, uint32_t t) {
     uint32_t i = diagonal(p, t), corners[4];
     if (i == 3) return 0;
@@ -79,8 +78,7 @@ static double likeness(const pairing *p, uint32_t t) {
     if (!(cos_bend >= COS_BEND)) return 0;
     dvec3 normal = d3_normalize(d3_add(n0, n1));
     for (int k = 0; k < 4; k++) {
-        double sine = d3_dot(d3_cross(edge[k], edge[(k + 1) % 4]), normal);
-        if (!(sine > SIN_CORNER)) return 0;
+        double sine = d3_dot(d3_cross(edge[k], edge[(k + 1) % 4]), normal); /* not positive: straight, or concave */
         least_sine = sine < least_sine ? sine : least_sine;
     }
     return least_sine * cos_bend;

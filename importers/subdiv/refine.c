@@ -12,7 +12,8 @@ typedef struct refiner {
 } refiner;
 
 static kiln_primvar primvar_of(kiln_primvar_kind kind, uint32_t set, const osd_values *v) {
-    return (kiln_primvar){kind, set, v->indices ? KILN_FACE_VARYING : KILN_VERTEX, v->values, v->value_count, v->indices};
+    return (kiln_primvar){kind, set, v->indices ? KILN_FACE_VARYING : KILN_VERTEX, v->values, v->value_count,
+                          v->indices};
 }
 
 /* A value per face goes to the face's children. */
@@ -45,7 +46,8 @@ static bool make_primvars(const refiner *r, kiln_mesh_desc *desc) {
         const kiln_primvar *p = &r->mesh->primvars[i];
         bool gone = p->kind == KILN_PRIMVAR_TANGENT || (p->kind == KILN_PRIMVAR_NORMAL && limit_normals);
         if (gone || (p->interpolation != KILN_UNIFORM && p->interpolation != KILN_CONSTANT)) continue;
-        bool ok = p->interpolation == KILN_UNIFORM ? pass_to_children(r, p, &primvars[count]) : copy_constant(r, p, &primvars[count]);
+        kiln_primvar *out = &primvars[count];
+        bool ok = p->interpolation == KILN_UNIFORM ? pass_to_children(r, p, out) : copy_constant(r, p, out);
         if (!ok) return false;
         count++;
     }

@@ -52,8 +52,10 @@ static void limit_levels(const job *j) {
         kiln_subdivision_result *row = j->plans[i].result;
         uint32_t level = fitting_level(&j->plans[i], low);
         if (!row->refined || level == row->level) continue;
-        report_warning(j->examination.report, KILN_CODE_LIMIT, j->scene->where, "raise the limit, or ask for a lower level",
-                       "subdivision would make more than %llu triangles: levels are lowered", (unsigned long long)limit);
+        report_warning(j->examination.report, KILN_CODE_LIMIT, j->scene->where,
+                       "raise the limit, or ask for a lower level",
+                       "subdivision would make more than %llu triangles: levels are lowered",
+                       (unsigned long long)limit);
         row->refined = level > 0;
         row->level = level;
         if (!level) snprintf(row->reason, sizeof row->reason, "refining it would exceed the limit of triangles");
@@ -67,7 +69,8 @@ static void refine(void *context, size_t index, uint32_t thread) {
     if (plan->result->refined && !atomic_load(&j->failed)) {
         scene_place place;
         place_set(&place, j->scene, "mesh", j->scene->meshes[index].name, index + 1);
-        if (!refine_mesh(j->scene, plan->result->mesh, &plan->cage, plan->result->level, &place.where, j->examination.report))
+        if (!refine_mesh(j->scene, plan->result->mesh, &plan->cage, plan->result->level, &place.where,
+                         j->examination.report))
             atomic_store(&j->failed, true);
     }
     arena_free(&plan->arena);

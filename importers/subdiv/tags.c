@@ -7,7 +7,8 @@
 /* Sdc::Crease::SHARPNESS_INFINITE. */
 static const float SHARPNESS_INFINITE = 10;
 
-float *tags_edge_sharpness(const kiln_mesh *m, const vertex_weld *w, const edge_table *edges, kiln_arena *arena, uint32_t *lost) {
+float *tags_edge_sharpness(const kiln_mesh *m, const vertex_weld *w, const edge_table *edges, kiln_arena *arena,
+                           uint32_t *lost) {
     float *sharpness = ARENA_ARRAY(arena, float, edges->count);
     const kiln_subdivision *s = &m->subdivision;
     *lost = 0;
@@ -34,12 +35,14 @@ bool tags_crease_angle(const kiln_cage *c, const edge_table *edges, double creas
         const polygon_edge *edge = &edges->edges[e];
         if (!edge_is_regular(edge, c->face_vertices)) continue; /* boundaries and worse are sharp already */
         const float *a = normals[corner_faces[edge->corners[0]]], *b = normals[corner_faces[edge->corners[1]]];
-        if ((double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2] < cosine) edge_sharpness[e] = SHARPNESS_INFINITE;
+        double bend = (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2];
+        if (bend < cosine) edge_sharpness[e] = SHARPNESS_INFINITE;
     }
     return true;
 }
 
-static bool apply_creases(const edge_table *edges, const float *edge_sharpness, kiln_arena *arena, kiln_subdivision *rules) {
+static bool apply_creases(const edge_table *edges, const float *edge_sharpness, kiln_arena *arena,
+                          kiln_subdivision *rules) {
     uint32_t count = 0;
     for (uint32_t e = 0; e < edges->count; e++) count += edge_sharpness[e] > 0;
     uint32_t *vertices = ARENA_ARRAY(arena, uint32_t, 2 * (size_t)count);
@@ -86,8 +89,8 @@ static bool apply_holes(const kiln_mesh *m, kiln_arena *arena, kiln_cage *c) {
     return true;
 }
 
-bool tags_apply(const kiln_mesh *m, const vertex_weld *w, const edge_table *edges, const float *edge_sharpness, kiln_arena *arena,
-                kiln_cage *c) {
+bool tags_apply(const kiln_mesh *m, const vertex_weld *w, const edge_table *edges, const float *edge_sharpness,
+                kiln_arena *arena, kiln_cage *c) {
     return apply_creases(edges, edge_sharpness, arena, &c->rules) && apply_corners(m, w, arena, &c->rules) &&
            apply_holes(m, arena, c);
 }

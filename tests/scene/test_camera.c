@@ -30,7 +30,8 @@ static void what_frames_the_picture_is_refused(void **state) {
         assert_false(kiln_scene_add_camera(f->scene, &c, NULL, f->report));
     }
     struct { double aspect, znear, zfar, open, close; } rows[] = {
-        {-1, 0, 0, 0, 0}, {NAN, 0, 0, 0, 0}, {0, -1, 0, 0, 0}, {0, 2, 1, 0, 0}, {0, 0, NAN, 0, 0}, {0, 0, 0, 1, 0}, {0, 0, 0, 0, INFINITY}};
+        {-1, 0, 0, 0, 0}, {NAN, 0, 0, 0, 0}, {0, -1, 0, 0, 0}, {0, 2, 1, 0, 0}, {0, 0, NAN, 0, 0}, {0, 0, 0, 1, 0},
+        {0, 0, 0, 0, INFINITY}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         kiln_camera c = kiln_camera_default();
         c.aspect = rows[i].aspect, c.znear = rows[i].znear, c.zfar = rows[i].zfar;

@@ -7,7 +7,8 @@ static void copies_unless_lent(void **state) {
     uint16_t pixels[2] = {1, 2};
     uint8_t file[3] = {7, 8, 9};
     int calls = 0;
-    kiln_image_desc image = {.name = "grey", .pixels = pixels, .width = 2, .height = 1, .channels = 1, .format = KILN_PIXELS_U16};
+    kiln_image_desc image = {.name = "grey", .pixels = pixels, .width = 2, .height = 1, .channels = 1,
+                             .format = KILN_PIXELS_U16};
     assert_true(kiln_scene_add_image(f->scene, &image, NULL, f->report));
     image = (kiln_image_desc){.encoded = file, .encoded_size = 3};
     assert_true(kiln_scene_add_image(f->scene, &image, NULL, f->report));

@@ -56,7 +56,8 @@ static void some_values_outside_the_unit_are_meant(void **state) {
     m.emission.value[0] = 1e6f;
     assert_true(kiln_scene_add_material(f->scene, &m, NULL, f->report));
     const kiln_material *k = scene_material(f->scene, 1);
-    assert_true(k->ior == 0 && k->base_color.value[0] == 12 && k->specular_color.value[0] == 3 && k->emission.value[0] == 1e6f);
+    assert_true(k->ior == 0 && k->base_color.value[0] == 12 && k->specular_color.value[0] == 3 &&
+                k->emission.value[0] == 1e6f);
     assert_int_equal(kiln_report_size(f->report), 0);
 }
 

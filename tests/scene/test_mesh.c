@@ -120,10 +120,12 @@ static void primvars_match_their_interpolation(void **state) {
         const char *where, *what;
     } bad[] = {
         {{KILN_PRIMVAR_NORMAL, 0, KILN_VERTEX, zeros, 2, NULL}, "mesh 'triangle': normals", "2 values for 3 vertices"},
-        {{KILN_PRIMVAR_UV, 1, KILN_FACE_VARYING, zeros, 4, NULL}, "mesh 'triangle': UV set 1", "4 values for 3 corners"},
+        {{KILN_PRIMVAR_UV, 1, KILN_FACE_VARYING, zeros, 4, NULL}, "mesh 'triangle': UV set 1",
+         "4 values for 3 corners"},
         {{KILN_PRIMVAR_COLOR, 0, KILN_UNIFORM, zeros, 3, NULL}, "mesh 'triangle': colours", "3 values for 1 faces"},
         {{KILN_PRIMVAR_TANGENT, 0, KILN_CONSTANT, zeros, 0, NULL}, "mesh 'triangle': tangents", "0 values for 1 mesh"},
-        {{KILN_PRIMVAR_UV, 0, KILN_VERTEX, zeros, 2, triangle_corners}, "mesh 'triangle': UV set 0", "index 2 of 2 values"},
+        {{KILN_PRIMVAR_UV, 0, KILN_VERTEX, zeros, 2, triangle_corners}, "mesh 'triangle': UV set 0",
+         "index 2 of 2 values"},
         {{KILN_PRIMVAR_UV, 0, KILN_VERTEX, NULL, 3, NULL}, "mesh 'triangle'", "an array of 3 elements is missing"},
         {{(kiln_primvar_kind)9, 0, KILN_VERTEX, zeros, 3, NULL}, "mesh 'triangle'", "primvar kind 9"},
         {{KILN_PRIMVAR_UV, 0, (kiln_interpolation)9, zeros, 3, NULL}, "mesh 'triangle'", "interpolation 9"},
@@ -171,9 +173,12 @@ static void values_that_are_not_numbers_are_counted(void **state) {
     assert_memory_equal(m->primvars[0].values, ((float[9]){0, 0, 1}), 9 * sizeof(float));
     assert_memory_equal(m->primvars[1].values, ((float[12]){1, 1, 1, 1, 1, 1, 1, 1, 0, .5f, 1, 1}), 12 * sizeof(float));
     assert_memory_equal(m->primvars[2].values, ((float[12]){1, 0, 0, -1, 1, 0, 0, 1, 1, 0, 0, -1}), 12 * sizeof(float));
-    assert_true(says(f->report, KILN_WARNING, "mesh 'triangle': normals", "2 of 3 values are not finite: zero is used"));
-    assert_true(says(f->report, KILN_WARNING, "mesh 'triangle': colours", "1 of 3 values are not finite: white is used"));
-    assert_true(says(f->report, KILN_WARNING, "mesh 'triangle': colours", "1 of 3 values lie outside their domain: clamped"));
+    assert_true(says(f->report, KILN_WARNING, "mesh 'triangle': normals",
+                     "2 of 3 values are not finite: zero is used"));
+    assert_true(says(f->report, KILN_WARNING, "mesh 'triangle': colours",
+                     "1 of 3 values are not finite: white is used"));
+    assert_true(says(f->report, KILN_WARNING, "mesh 'triangle': colours",
+                     "1 of 3 values lie outside their domain: clamped"));
     assert_true(says(f->report, KILN_WARNING, "mesh 'triangle': tangents", "2 of 3 values lie outside their domain"));
     assert_true(says(f->report, KILN_WARNING, "mesh 'triangle'", "primvar 3 repeats an earlier one"));
 }

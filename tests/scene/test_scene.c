@@ -72,8 +72,10 @@ static void bounds_follow_vertices_not_boxes(void **state) {
     turn.m[0] = h, turn.m[1] = h, turn.m[4] = -h, turn.m[5] = h;
     add_instance(f, 1, turn);
     for (int i = 0; i < 100; i++) add_instance(f, 1, (mat4){{.01, 0, 0, 0, 0, .01, 0, 0, 0, 0, .01, 0, 0, .1, 0, 1}});
+    /* inside the box of the first one, but higher than its vertices */
+    add_instance(f, 1, (mat4){{.01, 0, 0, 0, 0, .01, 0, 0, 0, 0, .01, 0, 0, 1.2, 0, 1}});
     assert_true(kiln_scene_commit(f->scene, f->report));
-    assert_bounds(f, (double[3]){-h, 0, 0}, (double[3]){h, h, 0});
+    assert_bounds(f, (double[3]){-h, 0, 0}, (double[3]){h, 1.21, 0});
 }
 
 static void bounds_hold_every_time(void **state) {
@@ -175,7 +177,8 @@ static void missing_uv_sets_are_told_once(void **state) {
     mesh.material = 1;
     assert_true(kiln_scene_add_mesh(f->scene, &mesh, NULL, f->report));
     assert_true(kiln_scene_commit(f->scene, f->report));
-    assert_true(says(f->report, KILN_WARNING, "mesh 'triangle'", "UV set 2, which a texture of material 'paint' reads"));
+    assert_true(says(f->report, KILN_WARNING, "mesh 'triangle'",
+                     "UV set 2, which a texture of material 'paint' reads"));
     assert_int_equal(kiln_report_count(f->report, KILN_WARNING), 1);
 }
 

@@ -29,6 +29,7 @@ static void tables_follow_the_curves(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(srgb_matches_the_standard), cmocka_unit_test(tables_follow_the_curves)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(srgb_matches_the_standard),
+                                       cmocka_unit_test(tables_follow_the_curves)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

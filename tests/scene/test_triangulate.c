@@ -12,7 +12,8 @@ static const uint32_t *cut(const float *positions, uint32_t size, uint32_t *coun
     offsets[1] = size;
     for (uint32_t i = 0; i < size; i++) order[i] = i;
     kiln_mesh mesh = {.vertex_count = size, .time_count = 1, .face_count = 1, .corner_count = size,
-                      .triangle_count = size - 2, .positions = positions, .face_offsets = offsets, .face_vertices = order};
+                      .triangle_count = size - 2, .positions = positions, .face_offsets = offsets,
+                      .face_vertices = order};
     assert_true(mesh_triangulate(&mesh, corners, faces));
     *count = size - 2;
     for (uint32_t t = 0; t < *count; t++) assert_int_equal(faces[t], 0);
@@ -54,15 +55,31 @@ static void quads_take_the_better_diagonal(void **state) {
         const float p[12] = {x, y, 0, x + .3f, y, 0, x + .3f, y + .2f, 0, x, y + .2f, 0};
         assert_int_equal(cut(p, 4, &count)[2], 2);
     }
+    for (int i = 0; i < 64; i++) { /* and so are turned squares */
+        float c = 1.1f * cosf((float)i), s = 1.1f * sinf((float)i), x = 50;
+        const float p[12] = {x, x, 0, x + c, x + s, 0, x + c - s, x + s + c, 0, x - s, x + c, 0};
+        assert_int_equal(cut(p, 4, &count)[2], 2);
+    }
 }
 
 static void polygons_are_covered_once(void **state) {
     (void)state;
     const float arrow[15] = {0, 0, 0, 4, 0, 0, 4, 4, 0, 2, 1, 0, 0, 4, 0};
     assert_covers(arrow, 5, 16 - 6);
-    const float bridged[30] = {/* a square with a square hole, joined by a bridge that is passed twice */
-                               0, 0, 0, 6, 0, 0, 6, 6, 0, 0, 6, 0, 0, 0, 0, 2, 2, 0, 2, 4, 0, 4, 4, 0, 4, 2, 0, 2, 2, 0};
-    assert_covers(bridged, 10, 36 - 4);
+    for (int hole = 0; hole < 3; hole++) /* a square hole, joined by a bridge that is passed twice */
+        for (int start = 0; start < 10; start++) {
+            static const float outer[10] = {0, 0, 6, 0, 6, 6, 0, 6, 0, 0}, inner[8] = {4, 2, 2, 2, 2, 4, 4, 4};
+            float p[30] = {0};
+            for (int i = 0; i < 10; i++) {
+                const float *from = i < 5 ? outer + 2 * i : inner + 2 * ((i - 5 + hole) % 4);
+                int to = (i + start) % 10;
+                p[3 * to] = from[0], p[3 * to + 1] = from[1];
+            }
+            assert_covers(p, 10, 36 - 4);
+        }
+    const float petals[27] = {/* three triangles that touch at a point, which the outline passes three times */
+                              0, 0, 0, 2, -1, 0, 2, 1, 0, 0, 0, 0, 0, 2, 0, -2, 2, 0, 0, 0, 0, -2, -1, 0, -1, -2, 0};
+    assert_covers(petals, 9, 2 + 2 + 1.5);
     enum { N = 2000 };
     static float star[3 * N], comb[3 * N];
     double area = 0;
@@ -132,7 +149,8 @@ static void faces_of_all_sizes_share_a_mesh(void **state) {
     fixture *f = *state;
     const float p[21] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 0, 0, -1, 1, 0, -2, .5f, 0};
     const uint32_t sizes[3] = {3, 5, 4}, vertices[12] = {0, 1, 2, 0, 3, 5, 6, 4, 0, 1, 2, 3};
-    kiln_mesh_desc desc = {.vertex_count = 7, .positions = p, .face_count = 3, .face_sizes = sizes, .face_vertices = vertices};
+    kiln_mesh_desc desc = {.vertex_count = 7, .positions = p, .face_count = 3, .face_sizes = sizes,
+                           .face_vertices = vertices};
     assert_true(kiln_scene_add_mesh(f->scene, &desc, NULL, f->report));
     uint32_t corners[18], faces[6];
     assert_true(mesh_triangulate(scene_mesh(f->scene, 1), corners, faces));

@@ -5,7 +5,8 @@
 #include "importers/subdiv/decide.h"
 #include "scene/scene.h"
 
-static void measure(const char *file, const kiln_scene *scene, const kiln_mesh *m, kiln_scheme scheme, kiln_report *report) {
+static void measure(const char *file, const kiln_scene *scene, const kiln_mesh *m, kiln_scheme scheme,
+                    kiln_report *report) {
     kiln_arena arena = {0};
     kiln_cage cage;
     osd_surface once;
@@ -13,12 +14,14 @@ static void measure(const char *file, const kiln_scene *scene, const kiln_mesh *
     char reason[160];
     cage_options options = {scheme, 0};
     if (!mesh_primvar(m, KILN_PRIMVAR_NORMAL, 0)) return;
-    printf("%s '%s' %u faces, %s: ", file, m->name, m->face_count, scheme == KILN_SCHEME_LOOP ? "Loop" : "Catmull-Clark");
+    printf("%s '%s' %u faces, %s: ", file, m->name, m->face_count,
+           scheme == KILN_SCHEME_LOOP ? "Loop" : "Catmull-Clark");
     if (!cage_build(m, &options, &arena, &cage, reason, scene->where, report)) printf("%s\n", reason);
     else if (osd_fit(&cage, &arena, scene->where, report) &&
              osd_refine(&cage, 1, &arena, &once, scene->where, report) && smoothness_measure(m, &cage, &once, &s)) {
         bool smooth = smoothness_decide(&s, reason);
-        printf("quads %.1f %%, split %.1f %%, normals %.1f deg, deviation %.3f %% (worst %.3f %%), slide %.3f %%, bulge %.3f %%: %s, %s\n",
+        printf("quads %.1f %%, split %.1f %%, normals %.1f deg, deviation %.3f %% (worst %.3f %%), slide %.3f %%, "
+               "bulge %.3f %%: %s, %s\n",
                100 * cage.quad_rate, 100 * s.split, s.normal_rad * 57.29577951, 100 * s.deviation, 100 * s.deviation_max,
                100 * s.slide, 100 * s.bulge, smooth ? "refine" : "leave", reason);
     }

@@ -54,9 +54,12 @@ static void read_tag(obj *o) {
     } else if (!strcmp(name, "hole")) {
         for (uint32_t i = 0; i < integers; i++) push(&o->holes, values.items[i].u);
     } else if (!strcmp(name, "interpolateboundary")) { /* 0 none, 1 edge and corner, 2 edge only */
-        o->rules.boundary = values.items[0].u == 0 ? KILN_BOUNDARY_NONE : values.items[0].u == 1 ? KILN_BOUNDARY_EDGE_AND_CORNER : KILN_BOUNDARY_EDGE_ONLY;
+        static const kiln_boundary boundaries[4] = {KILN_BOUNDARY_NONE, KILN_BOUNDARY_EDGE_AND_CORNER,
+                                                    KILN_BOUNDARY_EDGE_ONLY, KILN_BOUNDARY_NONE};
+        o->rules.boundary = boundaries[values.items[0].u & 3];
     } else if (!strcmp(name, "facevaryinginterpolateboundary")) { /* 0 all, 1 corners, 2 none, 3 boundaries */
-        static const kiln_fvar_boundary rules[4] = {KILN_FVAR_ALL, KILN_FVAR_CORNERS_PLUS1, KILN_FVAR_NONE, KILN_FVAR_BOUNDARIES};
+        static const kiln_fvar_boundary rules[4] = {KILN_FVAR_ALL, KILN_FVAR_CORNERS_PLUS1, KILN_FVAR_NONE,
+                                                    KILN_FVAR_BOUNDARIES};
         o->rules.fvar_boundary = rules[values.items[0].u & 3];
     } else if (!strcmp(name, "smoothtriangles")) {
         o->rules.smooth_triangles = true;
@@ -87,7 +90,8 @@ static void *take(shape *s, list *l) {
 
 static kiln_scheme scheme_of(const char *path) {
     const char *name = strrchr(path, '/') ? strrchr(path, '/') + 1 : path;
-    return !strncmp(name, "loop", 4) ? KILN_SCHEME_LOOP : !strncmp(name, "bilinear", 8) ? KILN_SCHEME_BILINEAR : KILN_SCHEME_CATMULL_CLARK;
+    if (!strncmp(name, "loop", 4)) return KILN_SCHEME_LOOP;
+    return !strncmp(name, "bilinear", 8) ? KILN_SCHEME_BILINEAR : KILN_SCHEME_CATMULL_CLARK;
 }
 
 bool obj_read(const char *path, shape *s) {

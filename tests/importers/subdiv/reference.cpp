@@ -34,12 +34,12 @@ Sdc::Options options_of(const kiln_subdivision &r) {
     o.SetVtxBoundaryInterpolation(r.boundary == KILN_BOUNDARY_NONE        ? Sdc::Options::VTX_BOUNDARY_NONE
                                   : r.boundary == KILN_BOUNDARY_EDGE_ONLY ? Sdc::Options::VTX_BOUNDARY_EDGE_ONLY
                                                                           : Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
-    o.SetFVarLinearInterpolation(r.fvar_boundary == KILN_FVAR_ALL            ? Sdc::Options::FVAR_LINEAR_ALL
-                                 : r.fvar_boundary == KILN_FVAR_NONE         ? Sdc::Options::FVAR_LINEAR_NONE
-                                 : r.fvar_boundary == KILN_FVAR_BOUNDARIES   ? Sdc::Options::FVAR_LINEAR_BOUNDARIES
-                                 : r.fvar_boundary == KILN_FVAR_CORNERS_ONLY ? Sdc::Options::FVAR_LINEAR_CORNERS_ONLY
-                                 : r.fvar_boundary == KILN_FVAR_CORNERS_PLUS2 ? Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2
-                                                                              : Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1);
+    o.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_CORNERS_PLUS1);
+    if (r.fvar_boundary == KILN_FVAR_ALL) o.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_ALL);
+    if (r.fvar_boundary == KILN_FVAR_NONE) o.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_NONE);
+    if (r.fvar_boundary == KILN_FVAR_BOUNDARIES) o.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_BOUNDARIES);
+    if (r.fvar_boundary == KILN_FVAR_CORNERS_ONLY) o.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_CORNERS_ONLY);
+    if (r.fvar_boundary == KILN_FVAR_CORNERS_PLUS2) o.SetFVarLinearInterpolation(Sdc::Options::FVAR_LINEAR_CORNERS_PLUS2);
     o.SetCreasingMethod(r.chaikin_creases ? Sdc::Options::CREASE_CHAIKIN : Sdc::Options::CREASE_UNIFORM);
     o.SetTriangleSubdivision(r.smooth_triangles ? Sdc::Options::TRI_SUB_SMOOTH : Sdc::Options::TRI_SUB_CATMARK);
     return o;
@@ -91,10 +91,12 @@ bool is_manifold(const Far::TopologyLevel &level) {
 
 // Where a vertex has sides, or is a corner, OpenSubdiv's tangents are those of one side, or of one face.
 bool has_one_normal(const Far::TopologyLevel &level, int vertex) {
+    Sdc::Crease::Rule rule = level.GetVertexRule(vertex);
+    if (rule == Sdc::Crease::RULE_DART) return true;
     for (int e : level.GetVertexEdges(vertex))
         if (!level.IsEdgeBoundary(e) && level.GetEdgeSharpness(e) > 0) return false;
-    Sdc::Crease::Rule rule = level.GetVertexRule(vertex);
-    return level.GetVertexSharpness(vertex) <= 0 && (rule == Sdc::Crease::RULE_SMOOTH || rule == Sdc::Crease::RULE_CREASE);
+    return level.GetVertexSharpness(vertex) <= 0 &&
+           (rule == Sdc::Crease::RULE_SMOOTH || rule == Sdc::Crease::RULE_CREASE);
 }
 
 Tuple normal_of(const Tuple &u, const Tuple &v) {

@@ -19,17 +19,19 @@ static void *keep(shape *s, const void *data, size_t count, size_t size) {
 }
 
 /* Adds a primvar whose values are the shape's already. */
-static void add_primvar(shape *s, kiln_primvar_kind kind, kiln_interpolation interpolation, const float *values, uint32_t count) {
+static void add_primvar(shape *s, kiln_primvar_kind kind, kiln_interpolation interpolation, const float *values,
+                        uint32_t count) {
     s->primvars[s->desc.primvar_count++] = (kiln_primvar){kind, 0, interpolation, values, count, NULL};
     s->desc.primvars = s->primvars;
 }
 
 void shape_cube(shape *s) {
-    static const float positions[24] = {-1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1, -1, 1, -1, 1, 1, -1, -1, -1, -1, 1, -1, -1};
+    static const float positions[24] = {-1, -1, 1, 1, -1, 1, -1, 1, 1, 1, 1, 1, -1, 1, -1, 1, 1, -1, -1, -1, -1, 1,
+                                        -1, -1};
     static const uint32_t sizes[6] = {4, 4, 4, 4, 4, 4};
     static const uint32_t corners[24] = {0, 1, 3, 2, 2, 3, 5, 4, 4, 5, 7, 6, 6, 7, 1, 0, 1, 7, 5, 3, 6, 0, 2, 4};
-    *s = (shape){.desc = {.name = "cube", .vertex_count = 8, .positions = positions, .face_count = 6, .face_sizes = sizes,
-                          .face_vertices = corners, .subdivision.scheme = KILN_SCHEME_CATMULL_CLARK}};
+    *s = (shape){.desc = {.name = "cube", .vertex_count = 8, .positions = positions, .face_count = 6,
+                          .face_sizes = sizes, .face_vertices = corners, .subdivision.scheme = KILN_SCHEME_CATMULL_CLARK}};
 }
 
 /* A point of a cube's surface, by its place on a lattice of n steps, blown up to the unit sphere. */
@@ -47,7 +49,8 @@ void shape_quad_sphere(shape *s, uint32_t n, float radius) {
     uint32_t rows = n + 1, faces = 6 * n * n, vertices = 0;
     uint32_t *numbers = keep(s, NULL, (size_t)rows * rows * rows, sizeof *numbers);
     float *positions = keep(s, NULL, (size_t)faces + 2, 3 * sizeof *positions);
-    float *normals = keep(s, NULL, (size_t)faces + 2, 3 * sizeof *normals), *uvs = keep(s, NULL, 4 * (size_t)faces, 2 * sizeof *uvs);
+    float *normals = keep(s, NULL, (size_t)faces + 2, 3 * sizeof *normals);
+    float *uvs = keep(s, NULL, 4 * (size_t)faces, 2 * sizeof *uvs);
     uint32_t *sizes = keep(s, NULL, faces, sizeof *sizes), *corners = keep(s, NULL, 4 * (size_t)faces, sizeof *corners);
     for (uint32_t c = 0; c < 4 * faces; c++) {
         uint32_t f = c / 4, k = c % 4, side = f / (n * n), axis = side % 3, lattice[3];
@@ -71,7 +74,8 @@ void shape_quad_sphere(shape *s, uint32_t n, float radius) {
         uvs[2 * c + 1] = ((float)v / (float)n + (float)(side / 3)) / 2;
     }
     s->desc = (kiln_mesh_desc){.name = "sphere", .vertex_count = vertices, .positions = positions, .face_count = faces,
-                               .face_sizes = sizes, .face_vertices = corners, .subdivision.scheme = KILN_SCHEME_CATMULL_CLARK};
+                               .face_sizes = sizes, .face_vertices = corners,
+                               .subdivision.scheme = KILN_SCHEME_CATMULL_CLARK};
     add_primvar(s, KILN_PRIMVAR_NORMAL, KILN_VERTEX, normals, vertices);
     add_primvar(s, KILN_PRIMVAR_UV, KILN_FACE_VARYING, uvs, 4 * faces);
 }
@@ -91,7 +95,8 @@ static unit3 *quarter(unit3 *soup, uint32_t triangles) {
     unit3 *out = malloc(12 * (size_t)triangles * sizeof *out);
     assert_non_null(out);
     for (uint32_t t = 0; t < triangles; t++) {
-        unit3 a = soup[3 * t], b = soup[3 * t + 1], c = soup[3 * t + 2], ab = between(a, b), bc = between(b, c), ca = between(c, a);
+        unit3 a = soup[3 * t], b = soup[3 * t + 1], c = soup[3 * t + 2];
+        unit3 ab = between(a, b), bc = between(b, c), ca = between(c, a);
         const unit3 order[12] = {a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca};
         memcpy(out + 12 * (size_t)t, order, sizeof order);
     }
@@ -100,8 +105,9 @@ static unit3 *quarter(unit3 *soup, uint32_t triangles) {
 }
 
 void shape_icosphere(shape *s, uint32_t n) {
-    static const int faces[60] = {0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6, 7, 1, 8,
-                                  3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5, 2, 4, 11, 6, 2, 10, 8, 6, 7, 9, 8, 1};
+    static const int faces[60] = {0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11, 1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6,
+                                  7, 1, 8, 3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9, 4, 9, 5, 2, 4, 11, 6, 2, 10, 8, 6,
+                                  7, 9, 8, 1};
     const double t = 1.6180339887498949;
     const double points[12][3] = {{-1, t, 0}, {1, t, 0}, {-1, -t, 0}, {1, -t, 0}, {0, -1, t}, {0, 1, t},
                                   {0, -1, -t}, {0, 1, -t}, {t, 0, -1}, {t, 0, 1}, {-t, 0, -1}, {-t, 0, 1}};
@@ -118,15 +124,18 @@ void shape_icosphere(shape *s, uint32_t n) {
     corner_stream stream = {all, 3};
     assert_true(topology_weld(&stream, 1, 3 * triangles, corners, &vertices));
     float *positions = keep(s, NULL, vertices, 3 * sizeof *positions);
-    for (uint32_t c = 0; c < 3 * triangles; c++) memcpy(positions + 3 * (size_t)corners[c], all + 3 * (size_t)c, 3 * sizeof *all);
-    s->desc = (kiln_mesh_desc){.name = "icosphere", .vertex_count = vertices, .positions = positions, .face_count = triangles,
+    for (uint32_t c = 0; c < 3 * triangles; c++)
+        memcpy(positions + 3 * (size_t)corners[c], all + 3 * (size_t)c, 3 * sizeof *all);
+    s->desc = (kiln_mesh_desc){.name = "icosphere", .vertex_count = vertices, .positions = positions,
+                               .face_count = triangles,
                                .face_vertices = corners, .subdivision.scheme = KILN_SCHEME_LOOP};
     add_primvar(s, KILN_PRIMVAR_NORMAL, KILN_VERTEX, positions, vertices);
 }
 
 void shape_strip(shape *s, uint32_t n, uint32_t seam) {
     *s = (shape){0};
-    float *positions = keep(s, NULL, 2 * (size_t)n + 2, 3 * sizeof *positions), *uvs = keep(s, NULL, 4 * (size_t)n, 2 * sizeof *uvs);
+    float *positions = keep(s, NULL, 2 * (size_t)n + 2, 3 * sizeof *positions);
+    float *uvs = keep(s, NULL, 4 * (size_t)n, 2 * sizeof *uvs);
     uint32_t *sizes = keep(s, NULL, n, sizeof *sizes), *corners = keep(s, NULL, 4 * (size_t)n, sizeof *corners);
     for (uint32_t i = 0; i < 2 * (n + 1); i++) positions[3 * i] = (float)(i / 2), positions[3 * i + 1] = (float)(i % 2);
     for (uint32_t f = 0; f < n; f++) {
@@ -139,18 +148,22 @@ void shape_strip(shape *s, uint32_t n, uint32_t seam) {
         }
     }
     s->desc = (kiln_mesh_desc){.name = "strip", .vertex_count = 2 * (n + 1), .positions = positions, .face_count = n,
-                               .face_sizes = sizes, .face_vertices = corners, .subdivision.scheme = KILN_SCHEME_CATMULL_CLARK};
+                               .face_sizes = sizes, .face_vertices = corners,
+                               .subdivision.scheme = KILN_SCHEME_CATMULL_CLARK};
     add_primvar(s, KILN_PRIMVAR_UV, KILN_FACE_VARYING, uvs, 4 * n);
 }
 
 void shape_cylinder(shape *s, uint32_t sides) {
     *s = (shape){0};
     uint32_t count = 6 * sides, corner = 0;
-    float *positions = keep(s, NULL, 2 * (size_t)sides, 3 * sizeof *positions), *normals = keep(s, NULL, count, 3 * sizeof *normals);
+    float *positions = keep(s, NULL, 2 * (size_t)sides, 3 * sizeof *positions);
+    float *normals = keep(s, NULL, count, 3 * sizeof *normals);
     uint32_t *sizes = keep(s, NULL, (size_t)sides + 2, sizeof *sizes), *corners = keep(s, NULL, count, sizeof *corners);
     for (uint32_t i = 0; i < 2 * sides; i++) {
         double angle = 6.283185307179586 * (i / 2) / sides;
-        positions[3 * i] = (float)cos(angle), positions[3 * i + 1] = i % 2 ? 1.0f : -1.0f, positions[3 * i + 2] = (float)-sin(angle);
+        positions[3 * i] = (float)cos(angle);
+        positions[3 * i + 1] = i % 2 ? 1.0f : -1.0f;
+        positions[3 * i + 2] = (float)-sin(angle);
     }
     for (uint32_t f = 0; f < sides + 2; f++) {
         sizes[f] = f < sides ? 4 : sides;
@@ -164,8 +177,9 @@ void shape_cylinder(shape *s, uint32_t sides) {
             else normal[1] = p[1];
         }
     }
-    s->desc = (kiln_mesh_desc){.name = "cylinder", .vertex_count = 2 * sides, .positions = positions, .face_count = sides + 2,
-                               .face_sizes = sizes, .face_vertices = corners, .subdivision.scheme = KILN_SCHEME_CATMULL_CLARK};
+    s->desc = (kiln_mesh_desc){.name = "cylinder", .vertex_count = 2 * sides, .positions = positions,
+                               .face_count = sides + 2, .face_sizes = sizes, .face_vertices = corners,
+                               .subdivision.scheme = KILN_SCHEME_CATMULL_CLARK};
     add_primvar(s, KILN_PRIMVAR_NORMAL, KILN_FACE_VARYING, normals, count);
 }
 
@@ -177,7 +191,8 @@ static corner_stream by_corner(shape *keeper, const kiln_mesh_desc *d, const kil
     float *values = keep(keeper, NULL, count, width * sizeof *values);
     for (uint32_t c = 0; c < count; c++) {
         uint32_t v = d->face_vertices[c];
-        memcpy(values + (size_t)width * c, p ? primvar_at(p, 0, c, v) : d->positions + 3 * (size_t)v, width * sizeof *values);
+        memcpy(values + (size_t)width * c, p ? primvar_at(p, 0, c, v) : d->positions + 3 * (size_t)v,
+               width * sizeof *values);
     }
     return (corner_stream){values, width};
 }
@@ -188,15 +203,18 @@ void shape_export(shape *result, const shape *source) {
     uint32_t count = 0, triangles = 0, vertices = 0;
     for (uint32_t f = 0; f < d->face_count; f++) count += size_of(d, f);
     corner_stream streams[5];
-    for (uint32_t i = 0; i <= d->primvar_count; i++) streams[i] = by_corner(result, d, i ? &d->primvars[i - 1] : NULL, count);
-    uint32_t *ids = keep(result, NULL, count, sizeof *ids), *corners = keep(result, NULL, 3 * (size_t)count, sizeof *corners);
+    for (uint32_t i = 0; i <= d->primvar_count; i++)
+        streams[i] = by_corner(result, d, i ? &d->primvars[i - 1] : NULL, count);
+    uint32_t *ids = keep(result, NULL, count, sizeof *ids);
+    uint32_t *corners = keep(result, NULL, 3 * (size_t)count, sizeof *corners);
     assert_true(topology_weld(streams, d->primvar_count + 1, count, ids, &vertices));
     for (uint32_t f = 0, first = 0; f < d->face_count; first += size_of(d, f++))
         for (uint32_t k = 1; k + 1 < size_of(d, f); k++, triangles++) {
             const uint32_t t[3] = {ids[first], ids[first + k], ids[first + k + 1]};
             memcpy(corners + 3 * (size_t)triangles, t, sizeof t);
         }
-    result->desc = (kiln_mesh_desc){.name = d->name, .vertex_count = vertices, .face_count = triangles, .face_vertices = corners,
+    result->desc = (kiln_mesh_desc){.name = d->name, .vertex_count = vertices, .face_count = triangles,
+                                    .face_vertices = corners,
                                     .subdivision = {.scheme = KILN_SCHEME_AUTO, .triangulated = true}};
     for (uint32_t i = 0; i <= d->primvar_count; i++) {
         uint32_t width = streams[i].width;
@@ -216,10 +234,12 @@ kiln_id shape_add(kiln_scene *scene, const shape *s, kiln_report *report) {
 
 edge_census shape_edges(const kiln_mesh *m) {
     kiln_arena arena = {0};
-    uint32_t *points = ARENA_ARRAY(&arena, uint32_t, m->vertex_count), *corners = ARENA_ARRAY(&arena, uint32_t, m->corner_count);
+    uint32_t *points = ARENA_ARRAY(&arena, uint32_t, m->vertex_count);
+    uint32_t *corners = ARENA_ARRAY(&arena, uint32_t, m->corner_count);
     uint32_t *sizes = ARENA_ARRAY(&arena, uint32_t, m->face_count);
     corner_stream stream = {m->positions, 3};
-    polygons p = {.face_count = m->face_count, .corner_count = m->corner_count, .face_sizes = sizes, .face_vertices = corners};
+    polygons p = {.face_count = m->face_count, .corner_count = m->corner_count, .face_sizes = sizes,
+                  .face_vertices = corners};
     assert_true(points && corners && sizes && topology_weld(&stream, 1, m->vertex_count, points, &p.vertex_count));
     for (uint32_t c = 0; c < m->corner_count; c++) corners[c] = points[m->face_vertices[c]];
     for (uint32_t f = 0; f < m->face_count; f++) sizes[f] = mesh_face_size(m, f);

@@ -65,7 +65,8 @@ static void a_refined_helmet_has_no_crack(void **state) {
     }
     kiln_subdivide_options options = {.mode = KILN_SUBDIVIDE_LEVEL, .level = 1};
     assert_true(kiln_subdivide(f->scene, &options, NULL, NULL, f->report));
-    for (kiln_id id = 1; id <= count; id++) assert_int_equal(shape_edges(scene_mesh(f->scene, id)).open, 2 * open[id - 1]);
+    for (kiln_id id = 1; id <= count; id++)
+        assert_int_equal(shape_edges(scene_mesh(f->scene, id)).open, 2 * open[id - 1]);
     assert_int_equal(kiln_report_count(f->report, KILN_ERROR), 0);
     free(open);
 }

@@ -139,11 +139,11 @@ static void every_kind_of_primvar_arrives(void **state) {
     const float uv[2] = {.5f, .75f};
     float per_face[12];
     for (int i = 0; i < 12; i++) per_face[i] = (float)(i / 2);
-    const float tangents[32] = {0};
+    const float tangent[4] = {1, 0, 0, 1};
     const kiln_primvar primvars[4] = {{KILN_PRIMVAR_COLOR, 0, KILN_VERTEX, colors, 8, NULL},
                                       {KILN_PRIMVAR_UV, 0, KILN_CONSTANT, uv, 1, NULL},
                                       {KILN_PRIMVAR_UV, 1, KILN_UNIFORM, per_face, 6, NULL},
-                                      {KILN_PRIMVAR_TANGENT, 0, KILN_VERTEX, tangents, 8, NULL}};
+                                      {KILN_PRIMVAR_TANGENT, 0, KILN_CONSTANT, tangent, 1, NULL}};
     cube.desc.primvars = primvars;
     cube.desc.primvar_count = 4;
     kiln_material material = kiln_material_default();

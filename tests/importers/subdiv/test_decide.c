@@ -44,7 +44,8 @@ static kiln_subdivision_result look(fixture *f, const shape *s) {
 }
 
 static void assert_left_alone(kiln_subdivision_result row, const char *reason) {
-    if (row.refined || !strstr(row.reason, reason)) fail_msg("refined %d: %s (expected: %s)", row.refined, row.reason, reason);
+    if (row.refined || !strstr(row.reason, reason))
+        fail_msg("refined %d: %s (expected: %s)", row.refined, row.reason, reason);
 }
 
 static void smooth_spheres_are_refined_in_place(void **state) {
@@ -57,7 +58,7 @@ static void smooth_spheres_are_refined_in_place(void **state) {
     assert_true(!strncmp(row.reason, "smooth: authored normals agree with the limit within 0.", 54));
     const kiln_mesh *m = scene_mesh(f->scene, row.mesh);
     assert_int_equal(m->face_count, quads.desc.face_count * 16);
-    for (uint32_t v = 0; v < m->vertex_count; v++) { /* a sphere as large as before: plain refinement shrinks it by 0.5 % */
+    for (uint32_t v = 0; v < m->vertex_count; v++) { /* as large as before: plain refinement shrinks it by 0.5 % */
         const float *p = m->positions + 3 * v;
         double radius = sqrt((double)p[0] * p[0] + (double)p[1] * p[1] + (double)p[2] * p[2]);
         assert_true(fabs(radius / 3 - 1) < 0.001);
@@ -107,6 +108,29 @@ static void products_are_left_alone(void **state) {
     shape_free(&coarse);
 }
 
+/* A flat ring of 24 sides: its surface is no rounder than it is, but its outline would be. */
+static void outlines_count(void **state) {
+    fixture *f = *state;
+    enum { N = 24 };
+    float positions[6 * N], normals[6 * N] = {0};
+    uint32_t sizes[N], corners[4 * N];
+    for (uint32_t i = 0; i < N; i++) {
+        float x = cosf((float)i * 6.2831853f / N), y = sinf((float)i * 6.2831853f / N);
+        const float two[6] = {x, y, 0, 2 * x, 2 * y, 0};
+        const uint32_t next = (i + 1) % N, face[4] = {2 * i, 2 * i + 1, 2 * next + 1, 2 * next};
+        memcpy(positions + 6 * i, two, sizeof two);
+        memcpy(corners + 4 * i, face, sizeof face);
+        normals[6 * i + 2] = normals[6 * i + 5] = 1;
+        sizes[i] = 4;
+    }
+    shape ring = {.desc = {.vertex_count = 2 * N, .positions = positions, .face_count = N, .face_sizes = sizes,
+                           .face_vertices = corners}};
+    ring.primvars[0] = (kiln_primvar){KILN_PRIMVAR_NORMAL, 0, KILN_VERTEX, normals, 2 * N, NULL};
+    ring.desc.primvars = ring.primvars;
+    ring.desc.primvar_count = 1;
+    assert_left_alone(look(f, &ring), "refining would deform it");
+}
+
 /* Normals of length zero say that the face's own is meant. */
 static void missing_normals_are_hard_edges(void **state) {
     fixture *f = *state;
@@ -150,6 +174,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(smooth_spheres_are_refined_in_place, setup, teardown),
         cmocka_unit_test_setup_teardown(products_are_left_alone, setup, teardown),
+        cmocka_unit_test_setup_teardown(outlines_count, setup, teardown),
         cmocka_unit_test_setup_teardown(missing_normals_are_hard_edges, setup, teardown),
         cmocka_unit_test_setup_teardown(who_says_something_is_obeyed, setup, teardown),
     };

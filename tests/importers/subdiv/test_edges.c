@@ -66,7 +66,8 @@ static void nothing_and_points_on_themselves(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_cube_has_twelve), cmocka_unit_test(fins_boundaries_and_flips_are_seen),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_cube_has_twelve),
+                                       cmocka_unit_test(fins_boundaries_and_flips_are_seen),
                                        cmocka_unit_test(nothing_and_points_on_themselves)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,7 +57,8 @@ static void points_that_part_later_are_two(void **state) {
     memcpy(p + 18, p, 18 * sizeof *p);
     p[18 + 9] = -1; /* vertex 3 leaves vertex 2 at the second time */
     const uint32_t corners[6] = {0, 1, 2, 3, 4, 5};
-    kiln_mesh_desc desc = {.vertex_count = 6, .time_count = 2, .positions = p, .face_count = 2, .face_vertices = corners};
+    kiln_mesh_desc desc = {.vertex_count = 6, .time_count = 2, .positions = p, .face_count = 2,
+                           .face_vertices = corners};
     vertex_weld w;
     assert_true(weld_vertices(add(f, &desc), true, &f->arena, &w));
     assert_int_equal(w.count, 5);
@@ -138,21 +139,40 @@ static void exported_quads_come_back(void **state) {
     shape_free(&triangles);
 }
 
-/* Quads 1…3 behind a lone triangle that would pair with the first half of the first quad. */
-static void a_lone_triangle_shifts_nothing(void **state) {
+/* A row of three quads between two lone triangles, each of which would pair with the half of a quad beside it. */
+static void lone_triangles_shift_nothing(void **state) {
     fixture *f = *state;
-    const float p[27] = {0, 0, 0, 0, 1, 0, -.6f, .5f, 0, 1, 0, 0, 1, 1, 0, 2, 0, 0, 2, 1, 0, 3, 0, 0, 3, 1, 0};
-    const uint32_t corners[21] = {0, 1, 2, 0, 3, 1, 3, 4, 1, 3, 5, 4, 5, 6, 4, 5, 7, 6, 7, 8, 6};
-    kiln_mesh_desc desc = {.vertex_count = 9, .positions = p, .face_count = 7, .face_vertices = corners};
-    paired result = pair(f, &desc, 0, 0);
-    assert_int_equal(result.faces.face_count, 4);
-    assert_memory_equal(result.faces.sizes, ((uint32_t[4]){3, 4, 4, 4}), sizeof(uint32_t[4]));
-    assert_true(fabs(result.rate - 6.0 / 7) < 1e-12);
-    assert_memory_equal(result.faces.sources, ((uint32_t[4]){0, 1, 3, 5}), sizeof(uint32_t[4]));
+    const float p[30] = {0, 0, 0, 0, 1, 0, -.6f, .5f, 0, 1, 0, 0, 1, 1, 0, 2, 0, 0, 2, 1, 0, 3, 0, 0, 3, 1, 0,
+                         3.6f, .5f, 0};
+    const uint32_t corners[24] = {0, 1, 2, 0, 3, 1, 3, 4, 1, 3, 5, 4, 5, 6, 4, 5, 7, 6, 7, 8, 6, 7, 9, 8};
+    kiln_mesh_desc desc = {.vertex_count = 10, .positions = p, .face_count = 8, .face_vertices = corners};
+    paired both = pair(f, &desc, 0, 0);
+    assert_memory_equal(both.faces.sizes, ((uint32_t[5]){3, 4, 4, 4, 3}), sizeof(uint32_t[5]));
+    assert_memory_equal(both.faces.sources, ((uint32_t[5]){0, 1, 3, 5, 7}), sizeof(uint32_t[5]));
+    assert_true(both.faces.face_count == 5 && both.rate == 0.75);
+    desc.face_count = 7;
+    paired first = pair(f, &desc, 0, 0);
+    assert_memory_equal(first.faces.sizes, ((uint32_t[4]){3, 4, 4, 4}), sizeof(uint32_t[4]));
+    desc.face_vertices = corners + 3;
+    paired last = pair(f, &desc, 0, 0);
+    assert_memory_equal(last.faces.sizes, ((uint32_t[4]){4, 4, 4, 3}), sizeof(uint32_t[4]));
+}
+
+/* Two triangles may also make an arrowhead, or a larger triangle. */
+static void quads_are_convex(void **state) {
+    fixture *f = *state;
+    for (int i = 0; i < 3; i++) {
+        float y = i == 0 ? -.5f : i == 1 ? 0 : .5f;
+        const float p[12] = {0, 0, 0, 1, y, 0, 0, 1, 0, -1, y, 0};
+        const uint32_t corners[6] = {0, 1, 2, 0, 2, 3};
+        kiln_mesh_desc desc = {.vertex_count = 4, .positions = p, .face_count = 2, .face_vertices = corners};
+        assert_true(pair(f, &desc, 0, 0).rate == (i == 2 ? 1.0 : 0.0));
+    }
 }
 
 /* One quad of two triangles on the diagonal 0–2, with a bend along it and values to taste. */
-static double rate_of_quad(fixture *f, float bend, float x3, const kiln_primvar *primvar, const kiln_id *materials, bool crease) {
+static double rate_of_quad(fixture *f, float bend, float x3, const kiln_primvar *primvar, const kiln_id *materials,
+                           bool crease) {
     const float p[18] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 1, 0, x3, 1, bend};
     const uint32_t corners[6] = {0, 1, 2, 3, 4, 5};
     kiln_mesh_desc desc = {.vertex_count = 6, .positions = p, .face_count = 2, .face_vertices = corners,
@@ -166,7 +186,8 @@ static void what_was_no_quad_stays_apart(void **state) {
     assert_true(kiln_scene_add_material(f->scene, &material, NULL, f->report));
     assert_true(kiln_scene_add_material(f->scene, &material, NULL, f->report));
     const float same[12] = {0, 0, 1, 0, 1, 1, 0, 0, 1, 1, 0, 1}, seam[12] = {0, 0, 1, 0, 1, 1, 0, 0, .5f, 1, 0, 1};
-    const kiln_primvar uv_same = {KILN_PRIMVAR_UV, 0, KILN_VERTEX, same, 6, NULL}, uv_seam = {KILN_PRIMVAR_UV, 0, KILN_VERTEX, seam, 6, NULL};
+    const kiln_primvar uv_same = {KILN_PRIMVAR_UV, 0, KILN_VERTEX, same, 6, NULL};
+    const kiln_primvar uv_seam = {KILN_PRIMVAR_UV, 0, KILN_VERTEX, seam, 6, NULL};
     const float frames[24] = {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1};
     const kiln_primvar tangents = {KILN_PRIMVAR_TANGENT, 0, KILN_VERTEX, frames, 6, NULL};
     assert_true(rate_of_quad(f, 0, 0, NULL, NULL, false) == 1);
@@ -188,7 +209,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(triangles_without_area_go, setup, teardown),
         cmocka_unit_test_setup_teardown(fans_become_polygons, setup, teardown),
         cmocka_unit_test_setup_teardown(exported_quads_come_back, setup, teardown),
-        cmocka_unit_test_setup_teardown(a_lone_triangle_shifts_nothing, setup, teardown),
+        cmocka_unit_test_setup_teardown(lone_triangles_shift_nothing, setup, teardown),
+        cmocka_unit_test_setup_teardown(quads_are_convex, setup, teardown),
         cmocka_unit_test_setup_teardown(what_was_no_quad_stays_apart, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -78,9 +78,11 @@ static void broken_topology_is_survived(void **state) {
     float *p = spiral(10);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         for (int scheme = KILN_SCHEME_NONE; scheme <= KILN_SCHEME_AUTO; scheme++) {
-            kiln_mesh_desc desc = {.name = cases[i].what, .vertex_count = 10, .positions = p, .face_count = cases[i].faces,
+            kiln_mesh_desc desc = {.name = cases[i].what, .vertex_count = 10, .positions = p,
+                                   .face_count = cases[i].faces,
                                    .face_sizes = cases[i].sizes, .face_vertices = cases[i].corners,
-                                   .subdivision = {.scheme = (kiln_scheme)scheme, .triangulated = scheme == KILN_SCHEME_AUTO}};
+                                   .subdivision = {.scheme = (kiln_scheme)scheme,
+                                                   .triangulated = scheme == KILN_SCHEME_AUTO}};
             for (int boundary = 0; boundary <= KILN_BOUNDARY_NONE; boundary++) {
                 desc.subdivision.boundary = (kiln_boundary)boundary;
                 force(f, &desc, 3);
@@ -114,7 +116,8 @@ static void large_valences_have_a_limit(void **state) {
     for (int i = 0; i < 3; i++) {
         uint32_t n = counts[i];
         for (uint32_t k = 0; k < n; k++) corners[k] = k, sizes[k] = 3;
-        kiln_mesh_desc desc = {.vertex_count = N + 1, .positions = p, .face_count = 1, .face_sizes = &n, .face_vertices = corners,
+        kiln_mesh_desc desc = {.vertex_count = N + 1, .positions = p, .face_count = 1, .face_sizes = &n,
+                               .face_vertices = corners,
                                .subdivision.scheme = KILN_SCHEME_CATMULL_CLARK};
         kiln_subdivision_result row = force(f, &desc, 1);
         assert_true(row.refined == (n <= 4096));
@@ -149,7 +152,8 @@ static void tags_of_nothing_are_left_out(void **state) {
     cube.desc.subdivision.hole_count = 3;
     kiln_id id;
     assert_true(kiln_scene_add_mesh(f->scene, &cube.desc, &id, f->report));
-    assert_true(kiln_subdivide(f->scene, &(kiln_subdivide_options){.mode = KILN_SUBDIVIDE_LEVEL, .level = 1}, NULL, NULL, f->report));
+    assert_true(kiln_subdivide(f->scene, &(kiln_subdivide_options){.mode = KILN_SUBDIVIDE_LEVEL, .level = 1}, NULL,
+                               NULL, f->report));
     assert_int_equal(scene_mesh(f->scene, id)->face_count, 5 * 4); /* without the hole */
     assert_finite(scene_mesh(f->scene, id));
     bool found = false;

@@ -42,11 +42,15 @@ static osd_surface refine(fixture *f, const shape *s, uint32_t level) {
 
 static dvec3 load(const float *p) { return (dvec3){p[0], p[1], p[2]}; }
 static double angle(dvec3 a, dvec3 b) { return atan2(d3_length(d3_cross(a, b)), d3_dot(a, b)) * 57.29577951308232; }
-static dvec3 point(const osd_surface *s, uint32_t corner) { return load(s->positions + 3 * (size_t)s->face_vertices[corner]); }
+static dvec3 point(const osd_surface *s, uint32_t corner) {
+    return load(s->positions + 3 * (size_t)s->face_vertices[corner]);
+}
 static uint32_t normal_index(const osd_surface *s, uint32_t corner) {
     return s->normals.indices ? s->normals.indices[corner] : s->face_vertices[corner];
 }
-static dvec3 normal(const osd_surface *s, uint32_t corner) { return load(s->normals.values + 3 * (size_t)normal_index(s, corner)); }
+static dvec3 normal(const osd_surface *s, uint32_t corner) {
+    return load(s->normals.values + 3 * (size_t)normal_index(s, corner));
+}
 
 typedef struct error { double rms, max; } error;
 
@@ -77,7 +81,7 @@ static void spheres_have_radial_normals(void **state) {
     shape_free(&triangles);
 }
 
-/* A cube whose edges are all infinitely sharp stays a cube: three normals at a corner, two at an edge, one elsewhere. */
+/* A cube whose edges are all infinitely sharp stays a cube: 3 normals at a corner, 2 at an edge, 1 elsewhere. */
 static void sharp_edges_split_normals(void **state) {
     fixture *f = *state;
     const uint32_t creases[24] = {0, 1, 1, 3, 3, 2, 2, 0, 3, 5, 5, 4, 4, 2, 5, 7, 7, 6, 6, 4, 7, 1, 0, 6};
@@ -93,7 +97,8 @@ static void sharp_edges_split_normals(void **state) {
     assert_int_equal(surface.normals.value_count, 8 * 3 + 12 * 3 * 2 + 6 * 9);
     for (uint32_t c = 0; c < 4 * surface.face_count; c++) {
         uint32_t first = c / 4 * 4;
-        dvec3 facet = d3_cross(d3_sub(point(&surface, first + 1), point(&surface, first)), d3_sub(point(&surface, first + 2), point(&surface, first)));
+        dvec3 facet = d3_cross(d3_sub(point(&surface, first + 1), point(&surface, first)),
+                               d3_sub(point(&surface, first + 2), point(&surface, first)));
         assert_true(angle(facet, normal(&surface, c)) < 1e-4);
     }
 }
@@ -169,7 +174,8 @@ static void shapes_have_the_normals_of_their_facets(void **state) {
         }
         osd_surface surface = refine(f, &s, 6);
         double off = share_off_facets(&surface, 20);
-        if (off > 0.01) fail_msg("%s: %.1f %% of the normals are more than 20 degrees off their facets", e->d_name, 100 * off);
+        if (off > 0.01)
+            fail_msg("%s: %.1f %% of the normals are more than 20 degrees off their facets", e->d_name, 100 * off);
         shape_free(&s);
         arena_free(&f->arena);
     }

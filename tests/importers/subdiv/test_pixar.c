@@ -32,7 +32,8 @@ typedef struct worst {
 static void compare_corner(const kiln_mesh *m, uint32_t corner, const reference *r, worst *w) {
     uint32_t v = m->face_vertices[corner], face = corner / mesh_face_size(m, 0);
     double distance = 0;
-    for (uint32_t k = 0; k < 3; k++) distance = fmax(distance, fabs((double)m->positions[3 * v + k] - (double)r->positions[3 * corner + k]));
+    for (uint32_t k = 0; k < 3; k++)
+        distance = fmax(distance, fabs((double)m->positions[3 * v + k] - (double)r->positions[3 * corner + k]));
     w->position = fmax(w->position, distance);
     const kiln_primvar *uvs = mesh_primvar(m, KILN_PRIMVAR_UV, 0), *normals = mesh_primvar(m, KILN_PRIMVAR_NORMAL, 0);
     for (uint32_t k = 0; r->uvs && k < 2; k++)
@@ -107,6 +108,7 @@ static void all_shapes_agree_with_opensubdiv(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_cube_agrees_with_opensubdiv), cmocka_unit_test(all_shapes_agree_with_opensubdiv)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_cube_agrees_with_opensubdiv),
+                                       cmocka_unit_test(all_shapes_agree_with_opensubdiv)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -94,7 +94,8 @@ static void bad_options_are_refused(void **state) {
     camera.yfov_rad = NAN;
     const kiln_subdivide_options bad[] = {
         {.mode = KILN_SUBDIVIDE_LEVEL}, {.mode = KILN_SUBDIVIDE_LEVEL, .level = 7}, {.mode = (kiln_subdivide_mode)3},
-        {.scheme = (kiln_scheme)5}, {.crease_angle_rad = NAN}, {.crease_angle_rad = -1}, {.camera = &camera, .height = 5}};
+        {.scheme = (kiln_scheme)5}, {.crease_angle_rad = NAN}, {.crease_angle_rad = -1},
+        {.camera = &camera, .height = 5}};
     const uint32_t n = sizeof bad / sizeof *bad;
     for (uint32_t i = 0; i < n; i++) {
         assert_false(kiln_subdivide(f->scene, &bad[i], &f->rows, &f->count, f->report));
@@ -114,7 +115,8 @@ static void levels_follow_the_view(void **state) {
     shape_export(&exported, &sphere);
     const double distances[] = {3, 12, 48, 2000};
     for (uint32_t i = 0; i < 4; i++) place(f, shape_add(f->scene, &exported, f->report), 1, -distances[i]);
-    place(f, 4, 1e-9, -1); /* a speck before the eye does not count */
+    place(f, 1, 1, -500); /* the nearest instance counts, */
+    place(f, 4, 1e-9, -1); /* and not a speck before the eye */
     shape_add(f->scene, &sphere, f->report);
     kiln_camera camera = kiln_camera_default();
     run(f, (kiln_subdivide_options){.camera = &camera, .width = 1024, .height = 1024});
@@ -141,11 +143,15 @@ static void facets_lie_within_a_tenth_of_a_pixel(void **state) {
     const kiln_mesh *m = scene_mesh(f->scene, 1);
     double longest = 0, chord = 0;
     for (uint32_t c = 0; c < m->corner_count; c++) {
-        const float *a = m->positions + 3 * m->face_vertices[c], *b = m->positions + 3 * m->face_vertices[c % 4 == 3 ? c - 3 : c + 1];
+        uint32_t here = 3 * m->face_vertices[c], next = 3 * m->face_vertices[c % 4 == 3 ? c - 3 : c + 1];
+        const float *a = m->positions + here, *b = m->positions + next;
         double length = 0, turn = 0;
         const kiln_primvar *normals = mesh_primvar(m, KILN_PRIMVAR_NORMAL, 0);
-        const float *na = normals->values + 3 * m->face_vertices[c], *nb = normals->values + 3 * m->face_vertices[c % 4 == 3 ? c - 3 : c + 1];
-        for (int k = 0; k < 3; k++) length += pow((double)a[k] - (double)b[k], 2), turn += (double)na[k] * (double)nb[k];
+        const float *na = normals->values + here, *nb = normals->values + next;
+        for (int k = 0; k < 3; k++) {
+            length += pow((double)a[k] - (double)b[k], 2);
+            turn += (double)na[k] * (double)nb[k];
+        }
         longest = fmax(longest, 400 * sqrt(length));
         chord = fmax(chord, 400 * sqrt(length) * acos(fmin(turn, 1)) / 8);
     }
@@ -190,7 +196,8 @@ static void threads_change_nothing(void **state) {
         const kiln_mesh *a = scene_mesh(scenes[0], id), *b = scene_mesh(scenes[1], id);
         assert_int_equal(a->vertex_count, b->vertex_count);
         assert_memory_equal(a->positions, b->positions, 3 * a->vertex_count * sizeof(float));
-        assert_memory_equal(a->primvars[0].values, b->primvars[0].values, 3 * a->primvars[0].value_count * sizeof(float));
+        assert_memory_equal(a->primvars[0].values, b->primvars[0].values,
+                            3 * a->primvars[0].value_count * sizeof(float));
     }
     for (int i = 0; i < 2; i++) kiln_scene_destroy(scenes[i]);
     kiln_report_destroy(report);
