@@ -1,5 +1,4 @@
 /* What the importer makes of files, against texts that were read and found right. */
-#include <dirent.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,6 +13,7 @@
 #include "tests/assets.h"
 #include "tests/golden/dump.h"
 #include "tests/golden/golden.h"
+#include "tests/golden/pairs.h"
 
 /* The scene's dump, with its report behind it. The file's name stays out. */
 static char *dump_file(const char *path) {
@@ -50,25 +50,6 @@ static void append_missing(const char *lines, const char *other, const char *sig
     free(rest);
 }
 
-static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
-
-/* The names of all pairs; free each, and the list. */
-static char **pair_names(size_t *count) {
-    DIR *folder = opendir(KILN_TEST_DATA "/gltf/pairs");
-    assert_non_null(folder);
-    char **names = NULL;
-    *count = 0;
-    for (struct dirent *entry; (entry = readdir(folder));) {
-        size_t length = strlen(entry->d_name);
-        if (length < 7 || strcmp(entry->d_name + length - 7, "_a.gltf") != 0) continue;
-        names = realloc(names, (*count + 1) * sizeof *names);
-        names[(*count)++] = strndup(entry->d_name, length - 7);
-    }
-    closedir(folder);
-    qsort(names, *count, sizeof *names, by_name);
-    return names;
-}
-
 static char *dump_side(const char *name, const char *side) {
     kiln_text path = {0};
     text_format(&path, "%s/gltf/pairs/%s_%s.gltf", KILN_TEST_DATA, name, side);
@@ -95,9 +76,8 @@ static void features_make_a_difference(void **state) {
         append_missing(b, a, "+", &text);
         free(a);
         free(b);
-        free(names[i]);
     }
-    free(names);
+    pair_names_free(names, count);
     assert_true(golden_matches("gltf/pairs.dump", text.data));
     text_free(&text);
 }

@@ -45,29 +45,25 @@ const bsdf_case bsdf_cases[] = {
 const size_t bsdf_case_count = sizeof bsdf_cases / sizeof *bsdf_cases;
 
 /* As render/world/materials.c and the material stage do. */
-static surface make_surface(const bsdf_case *c, float roughness, float *slices) {
+void subject_make(subject *to, const bsdf_case *c) {
     float ior = c->ior > 0 ? c->ior : 1000.0f, root = (ior - 1) / (ior + 1), eta = c->inside ? 1 / ior : ior;
-    albedo_make_slice(eta, slices);
-    albedo_make_slice(1 / eta, slices + ALBEDO_SLICE_FLOATS);
-    return (surface){.base = c->base, .metallic = c->metallic, .roughness = roughness, .specular = c->specular,
-                     .specular_color = c->specular_color, .f0 = c->ior > 0 ? root * root : 1.0f,
-                     .transmission = c->transmission, .eta = eta, .thin = c->thin ? 1.0f : 0.0f,
-                     .near_slice = 0, .far_slice = ALBEDO_SLICE_FLOATS};
+    to->row = c;
+    to->surface = (surface){.base = c->base, .metallic = c->metallic, .specular = c->specular,
+                            .specular_color = c->specular_color, .f0 = c->ior > 0 ? root * root : 1.0f,
+                            .transmission = c->transmission, .eta = eta, .thin = c->thin ? 1.0f : 0.0f,
+                            .near_slice = 0, .far_slice = ALBEDO_SLICE_FLOATS};
+    albedo_make_slice(eta, to->slices);
+    albedo_make_slice(1 / eta, to->slices + ALBEDO_SLICE_FLOATS);
 }
 
 static bsdf make(unsigned mask, const surface *s, vec3 wo, const float *slices) {
     return mask == D ? bsdf_make(D, s, wo, slices) : mask == G ? bsdf_make(G, s, wo, slices) : bsdf_make(T, s, wo, slices);
 }
 
-probe probe_make(const bsdf_case *c, float roughness, vec3 wo) {
-    static float slices[2 * ALBEDO_SLICE_FLOATS];
-    static const bsdf_case *filled;
-    static surface filled_with;
-    if (filled != c) filled_with = make_surface(c, roughness, slices);
-    filled = c;
-    probe p = {.mask = c->mask, .surface = filled_with, .slices = slices};
+probe probe_make(const subject *from, float roughness, vec3 wo) {
+    probe p = {.mask = from->row->mask, .surface = from->surface, .slices = from->slices};
     p.surface.roughness = roughness;
-    p.bsdf = make(p.mask, &p.surface, wo, slices);
+    p.bsdf = make(p.mask, &p.surface, wo, p.slices);
     return p;
 }
 

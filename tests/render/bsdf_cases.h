@@ -20,8 +20,16 @@ typedef struct bsdf_case {
 extern const bsdf_case bsdf_cases[];
 extern const size_t bsdf_case_count;
 
-/* The BSDF of a case at a roughness, seen from wo (local frame, wo.z > 0). The mask is a constant inside, as in the
- * renderer. */
+/* A case with the tables that its index of refraction calls for. */
+typedef struct subject {
+    const bsdf_case *row;
+    surface surface;
+    float slices[2 * ALBEDO_SLICE_FLOATS];
+} subject;
+void subject_make(subject *, const bsdf_case *);
+
+/* A subject of some roughness, seen from wo (local frame, wo.z > 0). It is asked with a constant mask, as the renderer
+ * does. */
 typedef struct probe {
     unsigned mask;
     surface surface;
@@ -29,7 +37,7 @@ typedef struct probe {
     const float *slices;
 } probe;
 
-probe probe_make(const bsdf_case *, float roughness, vec3 wo);
+probe probe_make(const subject *, float roughness, vec3 wo);
 /* The same surface seen from wi, in the local frame of wi's side; below the surface z is turned over. */
 probe probe_reverse(const probe *, vec3 wi);
 bsdf_value probe_evaluate(const probe *, vec3 wi);

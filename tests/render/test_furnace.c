@@ -31,7 +31,7 @@ static void sees_two(void **state) {
         for (int s = 0; s < 2; s++)
             for (int c = 0; c < 2; c++) {
                 kiln_render_options o = {.spp = 128, .estimator = estimators[e], .sampler = samplers[s],
-                                         .light_sampling = choices[c], .roulette = {.kind = KILN_ROULETTE_OFF}};
+                                         .light_sampling = choices[c], .roulette = {.kind = KILN_ROULETTE_OFF}, .max_depth = 24};
                 picture p = furnace(0.5f, &o);
                 if (fabs(p.mean - 2) > 3.9 * p.mean_error + 1e-5) /* 1 in 10,000 */
                     fail_msg("estimator %d, sampler %d, lights %d: %.5f ± %.5f", e, s, c, p.mean, p.mean_error);
