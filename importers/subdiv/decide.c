@@ -1,5 +1,6 @@
 #include "importers/subdiv/decide.h"
 
+#include <float.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -9,8 +10,8 @@
 
 #define DEGREE 0.017453292519943295
 /* Tuned on the meshes of about fifty glTF models. Spheres, hoses and lenses deviate by 0.01 to 0.06 %, with normals
- * within 7°; what has bevels, panels, or averaged normals on hard shapes, by 0.2 % and more, or normals off by 20° and
- * more. A thousandth of the bounds is a pixel in a picture that the model fills. */
+ * within 7°; what has bevels, panels, or averaged normals on hard shapes, by 0.2 % and more, or has normals that are off
+ * by 9° and more. A thousandth of the bounds is a pixel in a picture that the model fills. */
 static const double SPLIT_MAX = 0.02;
 static const double NORMAL_MAX_RAD = 7.5 * DEGREE;
 static const double DEVIATION_MAX = 0.001, DEVIATION_WORST = 0.002;
@@ -106,7 +107,8 @@ static void sample_edge(const comparison *c, uint32_t face, uint32_t corner, uin
     double slide, ignored, at_vertex = distance(limit_point(c, here), a);
     double at_edge = across(d3_sub(limit, promised), edge, normal, boundary, &slide);
     s->angles[s->count] = (float)angle_between(normal_a, limit_normal(c, here));
-    s->deviations[s->count++] = (float)(at_vertex > at_edge ? at_vertex : at_edge);
+    double deviation = at_vertex > at_edge ? at_vertex : at_edge;
+    s->deviations[s->count++] = deviation < FLT_MAX ? (float)deviation : FLT_MAX; /* NaN too: it must not sort */
     s->slide = fmax(s->slide, slide);
     s->bulge = fmax(s->bulge, across(d3_sub(limit, middle), edge, normal, boundary, &ignored));
 }

@@ -76,6 +76,7 @@ static bool try_cage(const subject *s) {
  * one may not. */
 static bool examine_automatic(const subject *s) {
     kiln_subdivision_result *row = s->plan->result;
+    if (row->scheme == KILN_SCHEME_BILINEAR) return say(s, "bilinear refinement changes no shape"), true;
     if (s->placement) {
         double pixels = level_edge_pixels(&s->plan->cage, s->placement, &s->x->view);
         if (pixels < 0) return report_no_memory(s->x->report, "subdividing a mesh");

@@ -8,6 +8,8 @@
 #include "scene/check.h"
 
 static const uint64_t TRIANGLE_LIMIT = 50000000;
+/* Far counts in int, over all levels. */
+static const uint64_t TRIANGLE_LIMIT_MAX = (uint64_t)1 << 28;
 
 typedef struct job {
     kiln_scene *scene;
@@ -109,8 +111,9 @@ bool kiln_subdivide(kiln_scene *scene, const kiln_subdivide_options *given, kiln
     mat4 *placements = view.present ? level_largest_instances(scene, &view) : NULL;
     kiln_subdivision_result *rows = array_alloc(count, sizeof *rows);
     job j = {.scene = scene, .plans = array_alloc(count, sizeof *j.plans)};
-    j.examination = (examination){scene, options, options->triangle_limit ? options->triangle_limit : TRIANGLE_LIMIT,
-                                  view, placements, report};
+    uint64_t limit = options->triangle_limit ? options->triangle_limit : TRIANGLE_LIMIT;
+    if (limit > TRIANGLE_LIMIT_MAX) limit = TRIANGLE_LIMIT_MAX;
+    j.examination = (examination){scene, options, limit, view, placements, report};
     bool ok = (rows && j.plans && (placements || !view.present)) || report_no_memory(report, "subdividing");
     for (uint32_t i = 0; ok && i < count; i++) j.plans[i].result = &rows[i];
     ok = ok && run(&j, options->threads);

@@ -18,6 +18,8 @@ typedef struct kiln_import_options {
  * NULL and the report says where in the file and what to do. */
 KILN_API bool kiln_import(const char *path, const kiln_import_options *, kiln_scene **scene, kiln_report *);
 
+/* AUTO: the meshes that ask for it, and of those that say nothing (KILN_SCHEME_AUTO) the evidently smooth ones, which
+ * are rounded off and keep their shape. */
 typedef enum kiln_subdivide_mode { KILN_SUBDIVIDE_AUTO, KILN_SUBDIVIDE_OFF, KILN_SUBDIVIDE_LEVEL } kiln_subdivide_mode;
 
 typedef struct kiln_subdivide_options {
@@ -28,7 +30,7 @@ typedef struct kiln_subdivide_options {
     const kiln_camera *camera;  /* AUTO: edges are refined until they are about a pixel in this view; NULL: level 2 */
     uint32_t width, height;
     uint32_t threads;       /* 0: all */
-    uint64_t triangle_limit; /* in all; 0: 50 million */
+    uint64_t triangle_limit; /* in all; 0: 50 million; at most 2^28 */
 } kiln_subdivide_options;
 
 /* What happened to a mesh: reasons and numbers for `kiln inspect`. */

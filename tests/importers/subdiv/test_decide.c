@@ -141,6 +141,35 @@ static void missing_normals_are_hard_edges(void **state) {
     shape_free(&sphere);
 }
 
+/* A scheme for all meshes settles nothing about those that ask for none; bilinear facets stay what they are. */
+static void a_given_scheme_is_tried_alone(void **state) {
+    fixture *f = *state;
+    shape sphere, exported;
+    shape_quad_sphere(&sphere, 12, 1);
+    shape_export(&exported, &sphere);
+    for (int scheme = KILN_SCHEME_CATMULL_CLARK; scheme <= KILN_SCHEME_BILINEAR; scheme++) {
+        kiln_id id = shape_add(f->scene, &exported, f->report);
+        kiln_subdivision_result *rows;
+        uint32_t count;
+        kiln_subdivide_options options = {.scheme = (kiln_scheme)scheme};
+        assert_true(kiln_subdivide(f->scene, &options, &rows, &count, f->report));
+        assert_true(rows[id - 1].refined == (scheme != KILN_SCHEME_BILINEAR));
+        assert_int_equal(rows[id - 1].scheme, scheme);
+        free(rows);
+    }
+    shape_free(&sphere);
+    shape_free(&exported);
+}
+
+static void numbers_without_measure_are_left_alone(void **state) {
+    fixture *f = *state;
+    shape sphere;
+    shape_quad_sphere(&sphere, 8, 3.402e38f); /* fitting it would leave what a float can hold */
+    kiln_subdivision_result row = look(f, &sphere);
+    assert_false(row.refined);
+    shape_free(&sphere);
+}
+
 static void who_says_something_is_obeyed(void **state) {
     fixture *f = *state;
     shape cube, exported;
@@ -176,6 +205,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(products_are_left_alone, setup, teardown),
         cmocka_unit_test_setup_teardown(outlines_count, setup, teardown),
         cmocka_unit_test_setup_teardown(missing_normals_are_hard_edges, setup, teardown),
+        cmocka_unit_test_setup_teardown(a_given_scheme_is_tried_alone, setup, teardown),
+        cmocka_unit_test_setup_teardown(numbers_without_measure_are_left_alone, setup, teardown),
         cmocka_unit_test_setup_teardown(who_says_something_is_obeyed, setup, teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
