@@ -37,6 +37,9 @@ typedef struct kiln_film_desc {
     uint32_t aovs;              /* bits 1 << kiln_aov */
 } kiln_film_desc;
 
+/* Memory that such a film takes. */
+KILN_API uint64_t kiln_film_size(const kiln_film_desc *);
+
 KILN_API bool kiln_film_create(const kiln_film_desc *, kiln_film **film, kiln_report *);
 KILN_API void kiln_film_destroy(kiln_film *);
 KILN_API kiln_film_desc kiln_film_describe(const kiln_film *); /* crop always filled in */

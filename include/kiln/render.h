@@ -33,6 +33,20 @@ typedef struct kiln_renderer_options {
 KILN_API bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *, kiln_renderer **, kiln_report *);
 KILN_API void kiln_renderer_destroy(kiln_renderer *);
 
+typedef struct kiln_renderer_memory {
+    size_t acceleration; /* bytes of the BVH */
+    size_t scene;        /* triangles, materials, lights, environment */
+    size_t textures;     /* decoded */
+} kiln_renderer_memory;
+KILN_API kiln_renderer_memory kiln_renderer_describe_memory(const kiln_renderer *);
+
+/* What renders run on here. */
+typedef struct kiln_backend {
+    char embree[32];  /* version of the library that is loaded */
+    const char *isa;  /* instance of the stages: "v3" is x86-64-v3 */
+} kiln_backend;
+KILN_API kiln_backend kiln_render_backend(void);
+
 typedef enum kiln_estimator {
     KILN_ESTIMATOR_MIS,  /* light and BSDF samples combined by the power heuristic (Veach 1997) */
     KILN_ESTIMATOR_NEE,  /* light samples at every bounce; emission that the BSDF finds counts only at the first hit,
