@@ -51,6 +51,9 @@ typedef struct kiln_image_write_options {
     uint32_t text_count; /* pairs */
 } kiln_image_write_options;
 
+/* Names and versions of the libraries behind these calls, as they are loaded. The texts are borrowed for the call. */
+void image_versions(void (*each)(void *user, const char *name, const char *version), void *user);
+
 /* Writes 8-bit (or, where the format and options say so, 16-bit) pictures from F32 pixels in [0,1], rounded to
  * nearest. Format by suffix: .png .jpg .jpeg .webp .tif .tiff; path "-" is a PNG on standard output. The same input
  * gives the same bytes. Whole or not at all. JPEG of 4 channels is an error that says so. */
