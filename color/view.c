@@ -27,6 +27,7 @@ struct kiln_view {
     bool direct;      /* the matrix is the identity */
     bool neutral;     /* Khronos PBR Neutral comes between matrix and processor */
     bool srgb;
+    uint8_t cicp[2];  /* primaries and transfer by ITU-T H.273; 0: unknown */
 };
 
 static bool known(const name_list *list, const char *name) {
@@ -99,9 +100,24 @@ static bool ends_in_srgb(const kiln_color *color, const kiln_view_options *optio
            !strcasestr(space, "ap1");
 }
 
+/* The displays of the embedded config that ITU-T H.273 has numbers for. What other configs call by these names need not
+ * be the same. */
+static void tag(kiln_view *view, const kiln_color *color, const kiln_view_options *options) {
+    static const struct { const char *display; uint8_t primaries, transfer; } rows[] = {{"Rec.1886", 1, 1},
+                                                                                        {"Display P3", 12, 13}};
+    const char *space = ocio_config_view_space(color->config, options->display, options->view);
+    if (!color_is_embedded(color) || !space || ocio_config_reference(color->config, space) == OCIO_DATA) return;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (strcmp(options->display, rows[i].display) == 0) {
+            view->cicp[0] = rows[i].primaries;
+            view->cicp[1] = rows[i].transfer;
+        }
+}
+
 static bool prepare(kiln_view *view, const kiln_color *color, const kiln_view_options *options, kiln_report *report) {
     view->scale = (float)exp2(options->exposure);
     view->srgb = ends_in_srgb(color, options);
+    tag(view, color, options);
     view->neutral = color_is_embedded(color) && strcmp(options->view, COLOR_VIEW_NEUTRAL) == 0;
     view->direct = view->neutral ? strcmp(color->working.space, COLOR_LIN_REC709) == 0 : color->working.direct;
     double matrix[9];
@@ -138,6 +154,11 @@ void kiln_view_destroy(kiln_view *view) {
 
 const char *kiln_view_describe(const kiln_view *view) { return view->description; }
 bool kiln_view_is_srgb(const kiln_view *view) { return view->srgb; }
+
+void kiln_view_cicp(const kiln_view *view, uint8_t *primaries, uint8_t *transfer) {
+    *primaries = view->cicp[0];
+    *transfer = view->cicp[1];
+}
 
 static inline float scrub(float x) {
     x = x == x ? x : 0;

@@ -45,6 +45,8 @@ KILN_API bool kiln_view_create(const kiln_color *, const kiln_view_options *, ki
 KILN_API void kiln_view_destroy(kiln_view *);
 KILN_API const char *kiln_view_describe(const kiln_view *); /* "display sRGB, view Raw, exposure +0.5" */
 KILN_API bool kiln_view_is_srgb(const kiln_view *);         /* the pixels may be tagged as sRGB */
+/* The numbers of ITU-T H.273 for other displays of the embedded config, to tag files with; 0, 0: unknown. */
+KILN_API void kiln_view_cicp(const kiln_view *, uint8_t *primaries, uint8_t *transfer);
 
 /* In place; channels 3 or 4 (alpha is left alone), interleaved. Pixels are exposed, then scrubbed (NaN becomes 0, what
  * lies beyond ±65504, infinities included, becomes that), then viewed; the result is clamped to [0,1] and finite. Any
