@@ -19,6 +19,19 @@ typedef struct kiln_instance {
     bool flat; /* at some time the transform is singular: no inverse */
 } kiln_instance;
 
+/* What an importer knows of the file beside its contents. */
+typedef struct scene_extension {
+    const char *name;
+    bool required;
+    const char *support; /* "read", "left out: highlights are round", … */
+} scene_extension;
+
+typedef struct scene_source {
+    const char *format, *generator, *copyright; /* "glTF 2.0"; NULL: the scene came from a program, or unknown */
+    const scene_extension *extensions;
+    uint32_t extension_count;
+} scene_source;
+
 struct kiln_scene {
     kiln_arena arena; /* of everything but the arrays below and the meshes */
     kiln_image_desc *images;
@@ -33,6 +46,7 @@ struct kiln_scene {
     kiln_bounds bounds;
     bool committed;
     kiln_material default_material;
+    scene_source source;
     const kiln_where *where; /* prefix of the places in messages, set by an importer; NULL: none */
 };
 

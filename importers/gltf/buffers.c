@@ -52,7 +52,7 @@ static bool fetch_bytes(gltf_reader *r, const json_value *uri, kiln_bytes *bytes
     size_t length = (size_t)(uri->end - uri->at) - 2;
     if (!uri_is_data(text, length) || memchr(text, '\\', length)) {
         if (!reader_reserve(r, length, where)) return false;
-        char *decoded = json_string(*uri, &r->arena);
+        char *decoded = json_text(*uri, &r->arena);
         if (!decoded) return report_no_memory(r->report, "reading a URI");
         text = decoded;
         length = strlen(decoded);

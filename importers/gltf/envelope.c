@@ -21,7 +21,7 @@ static bool read_version(json_value asset, const char *key, unsigned *version, k
     *version = 0;
     if (!json_member(asset, key, &value)) return true;
     kiln_where here = where_key(where, key);
-    char *text = json_kind_of(value.at) == JSON_STRING ? json_string(value, arena) : arena_string(arena, "");
+    char *text = json_kind_of(value.at) == JSON_STRING ? json_text(value, arena) : arena_string(arena, "");
     if (!text) return no_memory(report);
     *version = version_number(text);
     return *version || report_error(report, KILN_CODE_SYNTAX, &here, "export the file again",
@@ -47,6 +47,19 @@ bool envelope_check_version(json_value root, kiln_arena *arena, const kiln_where
     return true;
 }
 
+static const char *asset_text(json_value asset, const char *key, kiln_arena *arena) {
+    json_value value;
+    return json_member(asset, key, &value) && json_kind_of(value.at) == JSON_STRING ? json_text(value, arena) : NULL;
+}
+
+void envelope_read_asset(json_value root, kiln_arena *arena, const char **generator, const char **copyright) {
+    json_value asset;
+    *generator = *copyright = NULL;
+    if (!json_member(root, "asset", &asset)) return;
+    *generator = asset_text(asset, "generator", arena);
+    *copyright = asset_text(asset, "copyright", arena);
+}
+
 static bool read_source(json_value object, gltf_source *source, kiln_arena *arena, kiln_report *report) {
     *source = (gltf_source){.name = "", .mime_type = "", .buffer_view = -1};
     json_value key, value;
@@ -55,10 +68,10 @@ static bool read_source(json_value object, gltf_source *source, kiln_arena *aren
         uint64_t integer = 0;
         bool text = json_kind_of(value.at) == JSON_STRING;
         if (json_is(key, "uri")) source->uri = value;
-        else if (json_is(key, "byteLength") && json_integer(value, &integer)) source->byte_length = integer;
-        else if (json_is(key, "bufferView") && json_integer(value, &integer)) source->buffer_view = (int)integer;
-        else if (json_is(key, "name") && text) source->name = json_string(value, arena);
-        else if (json_is(key, "mimeType")) source->mime_type = json_string(value, arena);
+        else if (json_is(key, "byteLength") && json_whole(value, &integer)) source->byte_length = integer;
+        else if (json_is(key, "bufferView") && json_whole(value, &integer)) source->buffer_view = (int)integer;
+        else if (json_is(key, "name") && text) source->name = json_text(value, arena);
+        else if (json_is(key, "mimeType")) source->mime_type = json_text(value, arena);
         if (!source->name || !source->mime_type) return no_memory(report);
     }
     return true;

@@ -28,6 +28,9 @@ typedef struct gltf_envelope {
 /* asset.version, which decides what everything else means. root: of checked JSON. */
 bool envelope_check_version(json_value root, kiln_arena *, const kiln_where *file, kiln_report *);
 
+/* asset.generator and asset.copyright, in the arena; NULL where they are not texts. */
+void envelope_read_asset(json_value root, kiln_arena *, const char **generator, const char **copyright);
+
 /* root: of JSON that fits the schema. */
 bool envelope_read(json_value root, gltf_envelope *, kiln_arena *, const kiln_where *file, kiln_report *);
 

@@ -3,9 +3,13 @@
 #define KILN_IMPORTERS_GLTF_EXTENSIONS_H
 
 #include "importers/gltf/envelope.h"
+#include "scene/scene.h"
 
 /* A required extension that kiln does not read is an error; an optional one is one warning. */
 bool extensions_check(const gltf_envelope *, kiln_arena *, const kiln_where *file, kiln_report *);
+
+/* What of the file's extensions kiln reads, for those who ask; in the arena. */
+bool extensions_list(const gltf_envelope *, kiln_arena *, scene_source *, kiln_report *);
 
 typedef enum extension_support {
     EXTENSION_READ,

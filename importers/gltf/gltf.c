@@ -36,6 +36,14 @@ static uint64_t default_budget(void) {
     return pages > 0 && page > 0 ? (uint64_t)pages * (uint64_t)page / 4 * 3 : (uint64_t)8 << 30;
 }
 
+/* For those who ask what the file is. */
+static bool keep_source(gltf_reader *r, json_value root) {
+    scene_source *source = &r->scene->source;
+    source->format = "glTF 2.0";
+    envelope_read_asset(root, &r->scene->arena, &source->generator, &source->copyright);
+    return extensions_list(&r->envelope, &r->scene->arena, source, r->report);
+}
+
 static bool parse_document(gltf_reader *r) {
     const gltf_container *c = &r->container;
     uint64_t values;
@@ -43,7 +51,7 @@ static bool parse_document(gltf_reader *r) {
     json_value root = json_root(c->json);
     if (!envelope_check_version(root, &r->arena, &r->file, r->report) || !schema_check(root, &r->file, r->report) ||
         !envelope_read(root, &r->envelope, &r->arena, &r->file, r->report) ||
-        !extensions_check(&r->envelope, &r->arena, &r->file, r->report))
+        !extensions_check(&r->envelope, &r->arena, &r->file, r->report) || !keep_source(r, root))
         return false;
     uint64_t parser_bytes = values * PARSED_VALUE_BYTES + c->json_size;
     if (!reader_reserve(r, parser_bytes, &r->file)) return false;

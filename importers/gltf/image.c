@@ -57,7 +57,7 @@ static bool probe(gltf_reader *r, const encoded *e, const kiln_where *where) {
 /* Its name, or that of its file. */
 static const char *name_of(gltf_reader *r, const gltf_source *source) {
     if (*source->name || !source->uri.at || source->uri.end - source->uri.at > 512) return source->name;
-    const char *uri = json_string(source->uri, &r->arena);
+    const char *uri = json_text(source->uri, &r->arena);
     return uri && strncmp(uri, "data:", 5) != 0 ? path_base(uri) : "";
 }
 

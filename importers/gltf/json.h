@@ -43,9 +43,9 @@ bool json_is(json_value string, const char *name);
 bool json_member(json_value object, const char *name, json_value *value);
 
 /* A string's characters, decoded, terminated; a NUL inside ends it. NULL: memory ran out. */
-char *json_string(json_value string, kiln_arena *);
+char *json_text(json_value string, kiln_arena *);
 
 /* The value of a literal that is a non-negative integer without fraction and exponent, at most 2⁵³. */
-bool json_integer(json_value number, uint64_t *value);
+bool json_whole(json_value number, uint64_t *value);
 
 #endif

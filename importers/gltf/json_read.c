@@ -138,7 +138,7 @@ static const char *decode_unicode(const char *at, char **out) {
     return at;
 }
 
-char *json_string(json_value string, kiln_arena *arena) {
+char *json_text(json_value string, kiln_arena *arena) {
     size_t size = (size_t)(string.end - string.at); /* no escape is shorter than what it stands for */
     char *text = ARENA_ARRAY(arena, char, size + 1), *out = text;
     if (!text) return NULL;
@@ -157,7 +157,7 @@ char *json_string(json_value string, kiln_arena *arena) {
     return text;
 }
 
-bool json_integer(json_value number, uint64_t *value) {
+bool json_whole(json_value number, uint64_t *value) {
     *value = 0;
     for (const char *at = number.at; at < number.end; at++) {
         if (*at < '0' || *at > '9') return false;

@@ -30,7 +30,7 @@ static bool mismatch(const checker *c, const char *wanted, const char *at, const
 static bool check_integer(const checker *c, json_value value, uint64_t limit, const kiln_where *where) {
     uint64_t integer;
     int shown = value.end - value.at > 24 ? 24 : (int)(value.end - value.at);
-    if (!json_integer(value, &integer))
+    if (!json_whole(value, &integer))
         return report_error(c->report, KILN_CODE_RANGE, where, remedy, "a non-negative integer is expected, not %.*s",
                             shown, value.at);
     return integer <= limit ||
@@ -41,7 +41,7 @@ static bool check_integer(const checker *c, json_value value, uint64_t limit, co
 static bool check_index(const checker *c, json_value value, const schema_row *row, const kiln_where *where) {
     uint64_t index;
     if (!check_integer(c, value, INT32_MAX, where)) return false;
-    json_integer(value, &index);
+    json_whole(value, &index);
     if (strcmp(row->key, "indices") == 0 && index >= c->accessor_count)
         return report_error(c->report, KILN_CODE_REFERENCE, where, remedy,
                             "accessor %llu does not exist (the file has %zu)", (unsigned long long)index,
