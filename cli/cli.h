@@ -1,0 +1,51 @@
+/* cli/cli.h: subcommands, and what they share. Only main.c leaves the process. */
+#ifndef KILN_CLI_CLI_H
+#define KILN_CLI_CLI_H
+
+#include "job/option.h"
+#include "kiln/job.h"
+
+typedef enum cli_progress { PROGRESS_AUTO, PROGRESS_ALWAYS, PROGRESS_NEVER } cli_progress;
+
+/* How a command talks. */
+typedef struct cli_talk {
+    bool json, quiet, verbose, help;
+    cli_progress progress;
+} cli_talk;
+
+extern const option_table cli_talk_table;
+
+typedef struct cli_args {
+    kiln_job *job; /* has the options that were given */
+    cli_talk talk;
+    const char *scene; /* the one positional argument; NULL: none */
+} cli_args;
+
+typedef struct cli_command {
+    const char *name, *argument, *summary;
+    const char *const *groups; /* of job options that it takes, by heading, NULL at the end; NULL: all */
+    const char *talk; /* names of talk options that it takes, between spaces */
+    const char *examples;
+    int (*run)(const struct cli_command *, cli_args *, kiln_report *); /* the exit code */
+} cli_command;
+
+extern const cli_command cli_render, cli_inspect, cli_info, cli_help, cli_version;
+extern const cli_command *const cli_commands[]; /* NULL at the end */
+
+enum { EXIT_USAGE = 2, EXIT_INPUT = 3, EXIT_NOISE_MISSED = 4 };
+
+/* Whether the command takes the option. */
+bool cli_takes_job(const cli_command *, const option_row *);
+bool cli_takes_talk(const cli_command *, const option_row *);
+
+/* arguments behind the subcommand. False: reported. */
+bool cli_parse(const cli_command *, int count, char **arguments, cli_args *, kiln_report *);
+
+/* help.c: on standard output */
+void cli_print_overview(void);
+void cli_print_help(const cli_command *);
+
+/* Writes text to standard output; false: reported. */
+bool cli_print(const char *text, kiln_report *);
+
+#endif

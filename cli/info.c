@@ -1,0 +1,82 @@
+#include <stdlib.h>
+
+#include "cli/cli.h"
+#include "cli/json_text.h"
+
+static void print_names(kiln_text *out, const char *heading, const json_t *names) {
+    const json_t *name;
+    size_t i;
+    text_format(out, "  %-12s ", heading);
+    json_array_foreach(names, i, name) {
+        text_append(out, i ? ", " : "");
+        append_name(out, json_string_value(name), 0);
+    }
+    text_append(out, json_array_size(names) ? "\n" : "none\n");
+}
+
+static void print_color(kiln_text *out, const json_t *color) {
+    const json_t *display;
+    size_t i;
+    text_format(out, "\nColour\n  config       %s\n  default      %s\n", text_in(color, "config"), text_in(color, "default"));
+    json_array_foreach(member(color, "displays"), i, display) {
+        text_append(out, i ? "               " : "  displays     ");
+        append_name(out, text_in(display, "name"), 0);
+        const json_t *view;
+        size_t k;
+        json_array_foreach(member(display, "views"), k, view) {
+            text_append(out, k ? ", " : ": ");
+            append_name(out, json_string_value(view), 0);
+        }
+        text_append(out, "\n");
+    }
+    print_names(out, "looks", member(color, "looks"));
+    print_names(out, "spaces", member(color, "spaces"));
+}
+
+static void print_machine(kiln_text *out, const json_t *m) {
+    text_format(out, "\nMachine\n  cpu          %s\n  features     %s\n  kernels      %s\n  threads      %.0f\n  memory       ",
+                text_in(m, "cpu"), text_in(m, "features"), text_in(m, "isa"), number_in(m, "threads"));
+    append_bytes(out, number_in(m, "memory"));
+    text_append(out, "\n");
+}
+
+static void print_info(const char *json, kiln_text *out) {
+    json_t *root = json_loads(json, 0, NULL);
+    const json_t *formats = member(root, "formats"), *version;
+    const char *name;
+    text_append(out, "Versions\n");
+    json_object_foreach((json_t *)member(root, "versions"), name, version)
+        text_format(out, "  %-13s%s\n", name, json_string_value(version));
+    print_machine(out, member(root, "machine"));
+    print_color(out, member(root, "color"));
+    text_append(out, "\nFormats\n");
+    print_names(out, "scenes", member(formats, "scenes"));
+    print_names(out, "textures", member(formats, "pictures_read"));
+    print_names(out, "pictures", member(formats, "pictures_written"));
+    json_decref(root);
+}
+
+static int run(const cli_command *command, cli_args *args, kiln_report *report) {
+    (void)command;
+    char *json = kiln_job_info(args->job, report);
+    if (!json) return kiln_report_exit_code(report);
+    if (args->talk.json) cli_print(json, report);
+    else {
+        kiln_text text = {0};
+        print_info(json, &text);
+        cli_print(text.data ? text.data : "", report);
+        text_free(&text);
+    }
+    free(json);
+    return kiln_report_exit_code(report);
+}
+
+static const char *const groups[] = {"Colour", "Machine", NULL};
+
+const cli_command cli_info = {
+    .name = "info",
+    .summary = "versions, machine, colour config, formats",
+    .groups = groups,
+    .talk = " json help ",
+    .examples = "  kiln info\n  kiln info --ocio /show/config.ocio\n  kiln info --json | jq .versions",
+    .run = run};

@@ -1,0 +1,38 @@
+#include <stdlib.h>
+
+#include "cli/cli.h"
+#include "cli/inspect_text.h"
+#include "cli/log.h"
+
+static int run(const cli_command *command, cli_args *args, kiln_report *report) {
+    log_set_level(args->talk.quiet ? LOG_ERRORS : LOG_NORMAL);
+    if (!args->scene) {
+        report_error(report, KILN_CODE_USAGE, NULL, "kiln inspect car.glb", "kiln %s needs a scene", command->name);
+        return kiln_report_exit_code(report);
+    }
+    char *json = kiln_job_inspect(args->job, args->scene, report);
+    if (!json) return kiln_report_exit_code(report);
+    if (args->talk.json) cli_print(json, report);
+    else {
+        kiln_text text = {0};
+        inspect_text(json, args->talk.verbose, &text);
+        cli_print(text.data ? text.data : "", report);
+        text_free(&text);
+    }
+    free(json);
+    return kiln_report_exit_code(report);
+}
+
+/* What changes the answer. */
+static const char *const groups[] = {"Picture", "Camera", "Light", "Surfaces", "Machine", NULL};
+
+const cli_command cli_inspect = {
+    .name = "inspect",
+    .argument = "SCENE",
+    .summary = "what is in a file, and what kiln would make of it",
+    .groups = groups,
+    .talk = " json quiet verbose help ",
+    .examples = "  kiln inspect helmet.glb\n"
+                "  kiln inspect helmet.glb --json | jq .bounds.size\n"
+                "  kiln inspect helmet.glb --subdivide 2 --strict",
+    .run = run};

@@ -1,0 +1,15 @@
+/* job/exposure.h: an exposure for a scene whose light is in candela and lux. */
+#ifndef KILN_JOB_EXPOSURE_H
+#define KILN_JOB_EXPOSURE_H
+
+#include "kiln/render.h"
+
+/* From a quick render of the same view: options are those of the render to come; its stop rules, progress and cancel flag
+ * are not used. width, height: of the picture. 0 when everything is black. */
+bool exposure_choose(const kiln_renderer *, const kiln_render_options *, uint32_t width, uint32_t height, double *stops,
+                     kiln_report *);
+
+/* From luminances, in any order (they are sorted): those of the surfaces that the picture shows. */
+double exposure_of(float *luminance, size_t count);
+
+#endif

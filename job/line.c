@@ -1,0 +1,157 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "job/exposure.h"
+#include "job/machine.h"
+#include "job/metadata.h"
+#include "job/run.h"
+
+static bool needs_alpha(const job_run *r) { return r->options->background.kind != KILN_BACKGROUND_ENVIRONMENT; }
+
+/* The picture in memory at most once as floats beside the film: RGBA, and the widest AOV. */
+enum { OUTPUT_BYTES_PER_PIXEL = 32 };
+
+bool run_film(job_run *r) {
+    const job_options *o = r->options;
+    r->film_desc = (kiln_film_desc){.width = r->view.width, .height = r->view.height, .aovs = o->aovs};
+    memcpy(r->film_desc.crop, o->crop, sizeof o->crop);
+    if (needs_alpha(r)) r->film_desc.aovs |= 1u << KILN_AOV_ALPHA;
+    uint64_t pixels = o->crop[2] ? (uint64_t)(o->crop[2] - o->crop[0]) * (o->crop[3] - o->crop[1])
+                                 : (uint64_t)r->view.width * r->view.height;
+    uint64_t bytes = kiln_film_size(&r->film_desc) + pixels * OUTPUT_BYTES_PER_PIXEL, machine = machine_memory();
+    bool cropped_inside = o->crop[2] <= r->view.width && o->crop[3] <= r->view.height;
+    if (cropped_inside && machine && bytes > machine / 4 * 3)
+        return report_error(r->report, KILN_CODE_LIMIT, NULL, "render a smaller picture, or crops of it",
+                            "%u x %u pixels need %.1f GB, and the machine has %.1f GB", r->view.width, r->view.height,
+                            (double)bytes * 1e-9, (double)machine * 1e-9);
+    return kiln_film_create(&r->film_desc, &r->film, r->report);
+}
+
+bool run_build(job_run *r) {
+    kiln_renderer_options options = {r->options->threads, r->options->embree_config, &r->decoding};
+    if (!kiln_renderer_create(r->scene, &options, &r->renderer, r->report)) return false;
+    r->memory = kiln_renderer_describe_memory(r->renderer);
+    return true;
+}
+
+static kiln_render_options render_options(const job_run *r) {
+    const job_options *o = r->options;
+    return (kiln_render_options){.camera = &r->view.camera,
+                                 .spp = r->rules.spp,
+                                 .noise = r->rules.noise,
+                                 .error_scale = exp2(r->exposure),
+                                 .budget_seconds = r->rules.budget_seconds,
+                                 .seed = o->seed,
+                                 .max_depth = o->max_depth ? o->max_depth : KILN_DEPTH_ZERO,
+                                 .estimator = o->estimator,
+                                 .roulette = o->roulette,
+                                 .sampler = o->sampler,
+                                 .light_sampling = o->light_sampling,
+                                 .filter = o->filter.kind,
+                                 .filter_width = o->filter.width,
+                                 /* A background colour is put behind the finished picture. */
+                                 .background = needs_alpha(r) ? KILN_BACKGROUND_TRANSPARENT : KILN_BACKGROUND_ENVIRONMENT,
+                                 .cancel = r->events->cancel,
+                                 .progress = r->events->progress,
+                                 .progress_user = r->events->user};
+}
+
+/* Only what is shown, or judged by its noise, needs an exposure. */
+static bool needs_exposure(const job_run *r) {
+    bool judged = outputs_any(&r->outputs, OUTPUT_DISPLAY) || r->rules.noise > 0;
+    return judged && r->lighting.punctual && !job_given(r->options, exposure);
+}
+
+bool run_expose(job_run *r) {
+    if (!needs_exposure(r)) return true;
+    kiln_render_options options = render_options(r);
+    if (!exposure_choose(r->renderer, &options, r->view.width, r->view.height, &r->exposure, r->report)) return false;
+    r->exposure_chosen = true;
+    kiln_view *again;
+    kiln_view_options view = {r->options->display, r->options->view, r->options->look, r->exposure};
+    if (!kiln_view_create(r->color, &view, &again, r->report)) return false;
+    kiln_view_destroy(r->display);
+    r->display = again;
+    run_log(r, "the lights are in candela and lux: an exposure of %+.1f stops was chosen (--exposure overrides it)",
+            r->exposure);
+    return true;
+}
+
+static void warn_of_discarded(const job_run *r) {
+    static const char *const causes[KILN_DISCARD_COUNT] = {[KILN_DISCARD_RAY] = "a ray that was not one",
+                                                           [KILN_DISCARD_RADIANCE] = "a radiance that is not a number",
+                                                           [KILN_DISCARD_OVERFLOW] = "a radiance beyond what the film holds"};
+    for (int d = 0; d < KILN_DISCARD_COUNT; d++) {
+        kiln_where where = where_root(r->source);
+        if (!r->stats.discarded[d]) continue;
+        report_warning(r->report, KILN_CODE_INTERNAL, &where, NULL,
+                       "%llu samples were left out for %s, the first in pixel %u,%u",
+                       (unsigned long long)r->stats.discarded[d], causes[d], r->stats.discarded_pixel[d][0],
+                       r->stats.discarded_pixel[d][1]);
+    }
+}
+
+bool run_render(job_run *r) {
+    kiln_render_options options = render_options(r);
+    r->rendered = true;
+    if (!kiln_render(r->renderer, &options, r->film, &r->stats, r->report)) return false;
+    r->error = kiln_film_estimate_error(r->film, exp2(r->exposure));
+    warn_of_discarded(r);
+    if (r->error.known && r->error.heavy_tail)
+        report_note(r->report, KILN_CODE_IGNORED, NULL, NULL,
+                    "few pixels hold most of the error: the estimate of the noise may be too low");
+    if (r->stats.lost_energy > 0.001)
+        report_note(r->report, KILN_CODE_IGNORED, NULL, "raise --max-depth",
+                    "the depth limit cuts an estimated %.1f %% of the light", 100 * r->stats.lost_energy);
+    return true;
+}
+
+/* sRGB's curve (IEC 61966-2-1), then from linear Rec.709 into the working space. */
+static void background_to_working(const job_run *r, float out[3]) {
+    double linear[3];
+    const float *m = r->decoding.matrix[KILN_TRANSFER_LINEAR];
+    for (int k = 0; k < 3; k++) {
+        double v = r->options->background.rgb[k] / 255.0;
+        linear[k] = v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+    }
+    for (int k = 0; k < 3; k++)
+        out[k] = (float)((double)m[3 * k] * linear[0] + (double)m[3 * k + 1] * linear[1] + (double)m[3 * k + 2] * linear[2]);
+}
+
+bool run_write(job_run *r) {
+    if (!kiln_film_samples(r->film)) return true; /* interrupted before anything could be seen */
+    const job_background *b = &r->options->background;
+    job_metadata metadata;
+    if (!metadata_make(&metadata, r)) return report_no_memory(r->report, "writing pictures");
+    picture p = {.film = r->film, .color = r->color, .view = r->display,
+                 .transparent = b->kind == KILN_BACKGROUND_TRANSPARENT,
+                 .background = b->kind == KILN_BACKGROUND_COLOR ? b->rgb : NULL,
+                 .threads = r->options->threads,
+                 .text = metadata.text, .text_count = metadata.text_count,
+                 .attributes = metadata.attributes, .attribute_count = metadata.attribute_count};
+    background_to_working(r, p.background_linear);
+    bool all = true;
+    for (uint32_t i = 0; i < r->outputs.count; i++) {
+        output *out = &r->outputs.items[i];
+        out->written = picture_write(&p, out->path, r->report);
+        r->outputs_written += out->written;
+        all = all && out->written;
+    }
+    metadata_free(&metadata);
+    return all;
+}
+
+bool run_check_strict(job_run *r) {
+    uint64_t warnings = kiln_report_count(r->report, KILN_WARNING);
+    if (!r->options->strict || !warnings) return true;
+    kiln_where where = where_root(r->source);
+    return report_error(r->report, KILN_CODE_STRICT, &where, "mend what the warnings say, or leave out --strict",
+                        "%llu warning%s, and --strict was given", (unsigned long long)warnings, warnings == 1 ? "" : "s");
+}
+
+bool run_missed_noise(const job_run *r) {
+    bool asked = job_given(r->options, noise) && r->rules.noise > 0;
+    bool reached = r->stats.stop == KILN_STOP_NOISE || (r->error.known && sqrt(r->error.relmse) <= r->rules.noise);
+    return r->rendered && asked && !reached;
+}

@@ -1,0 +1,84 @@
+/* job/run.h: one run of a job, as steps that share what they made. The steps are called in the order of this file; each
+ * returns false exactly when it added an error. Other kinds of jobs make other sequences of them. */
+#ifndef KILN_JOB_RUN_H
+#define KILN_JOB_RUN_H
+
+#include "job/camera.h"
+#include "job/lighting.h"
+#include "job/outputs.h"
+#include "job/picture.h"
+#include "kiln/import.h"
+
+typedef struct job_phase {
+    const char *name;
+    double seconds;
+} job_phase;
+
+enum { JOB_PHASES_MAX = 16 };
+
+typedef struct job_run {
+    const job_options *options;
+    const kiln_job_events *events;
+    kiln_report *report;
+
+    job_phase phases[JOB_PHASES_MAX];
+    uint32_t phase_count;
+    double started, phase_started;
+
+    char *source, *asset_name; /* the path as given; {name} */
+    job_rules rules;
+    kiln_color *color;
+    kiln_decoding decoding;
+    kiln_scene *scene;
+    bool owns_scene;
+    job_view view;
+    kiln_subdivision_result *subdivisions; /* one per mesh */
+    uint32_t subdivision_count;
+    uint64_t cage_triangles; /* before subdivision, each mesh once */
+    uint32_t asset_images; /* without the environment that is added */
+    job_lighting lighting;
+    output_plan outputs;
+    kiln_film_desc film_desc;
+    kiln_renderer *renderer;
+    kiln_renderer_memory memory;
+    kiln_view *display;
+    double exposure;
+    bool exposure_chosen;
+    kiln_film *film;
+    kiln_render_stats stats;
+    bool rendered;
+    kiln_film_error error;
+    uint32_t outputs_written;
+} job_run;
+
+bool run_start(job_run *, const job_options *, const kiln_job_events *, const char *source, kiln_report *);
+void run_free(job_run *);
+
+/* Ends the phase before and begins the next; NULL: begins none. False when the job was cancelled: reported. */
+bool run_phase(job_run *, const char *name);
+
+/* Tells people. */
+void run_log(const job_run *, const char *format, ...) KILN_PRINTF(2, 3);
+
+/* prepare.c: a file, or a scene that is lent, becomes a committed scene, framed and lit. */
+bool run_color(job_run *);  /* the config, the decoding tables, and whether the view exists */
+bool run_import(job_run *); /* source; not for a scene that is lent */
+bool run_camera(job_run *);
+bool run_outputs(job_run *); /* names, and whether they can be written */
+bool run_subdivide(job_run *);
+bool run_light(job_run *);   /* and commits the scene */
+
+/* line.c */
+bool run_film(job_run *);
+bool run_build(job_run *);
+bool run_expose(job_run *);
+bool run_render(job_run *);
+/* Writes every output, whatever happened to the others. */
+bool run_write(job_run *);
+/* What --strict asks, at any time: false when the report has warnings. */
+bool run_check_strict(job_run *);
+
+/* Whether an explicit --noise was not reached. */
+bool run_missed_noise(const job_run *);
+
+#endif
