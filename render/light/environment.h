@@ -46,12 +46,12 @@ static inline environment_value environment_look_up(const environment *e, vec2 p
 
 /* A direction by importance: a texel by inversion, a place in it uniform in solid angle. Fills the fields of the light's
  * record that light_sample_environment reads. */
-static inline void environment_pick(const environment *e, vec2 u, light *l) {
+static inline void environment_pick(const environment *e, vec2 u, float fine, light *l) {
     float across, down;
     uint32_t w = (uint32_t)e->width;
-    uint32_t row = distribution_pick(e->row_cdf, e->row_guide, (uint32_t)e->height, u.y, &down);
+    uint32_t row = distribution_pick(e->row_cdf, e->row_guide, (uint32_t)e->height, u.y, fine, &down);
     uint32_t column = distribution_pick(e->texel_cdf + (size_t)row * (w + 1), e->texel_guide + (size_t)row * w, w, u.x,
-                                        &across);
+                                        fine, &across);
     float step = 0.5f / (float)e->height;
     float top = fm_sincos_2pi((float)(int32_t)row * step).cos, bottom = fm_sincos_2pi((float)(int32_t)(row + 1) * step).cos;
     float turns = ((float)(int32_t)column + across) / (float)e->width - e->rotation_turns;

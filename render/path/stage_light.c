@@ -1,16 +1,17 @@
 #include "render/light/light.h"
 #include "render/path/stages.h"
 
-/* Which light, and its record. */
+/* Which light, and its record. The choice takes its share of the place's first number and leaves the rest, so that lights
+ * that lie side by side in the table, as the triangles of a lamp do, are sampled as one stratified area. */
 static void choose(const path_context *c, batch *b) {
     const light_table *t = &c->world->lights;
     path_scratch *x = &b->scratch;
     for (uint32_t i = 0; i < b->n; i++) {
-        float rest;
-        uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, x->u_pick[i], &rest);
+        float rest, fine = x->u_fine[i];
+        uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, x->u_light_x[i], fine, &rest);
+        x->u_light_x[i] = rest;
         light l = t->lights[k];
-        if (l.kind == LIGHT_ENVIRONMENT)
-            environment_pick(&t->environment, (vec2){x->u_light_x[i], x->u_light_y[i]}, &l);
+        if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, (vec2){rest, x->u_light_y[i]}, fine, &l);
         x->probability[i] = distribution_probability(c->light_cdf, k);
         x->light[i] = k;
         x->light_kind[i] = (uint32_t)l.kind;

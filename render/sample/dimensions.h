@@ -12,8 +12,8 @@
     X(PIXEL, 2, "place in the pixel's filter")                                                                         \
     X(LENS, 2, "place on the lens")                                                                                    \
     X(TIME, 1, "moment in the shutter")                                                                                \
-    X(LIGHT, 2, "place on a light")                                                                                    \
-    X(LIGHT_PICK, 2, "which light; which shadow ray is stopped by coverage")                                           \
+    X(LIGHT, 2, "which light, and the place on it")                                                                    \
+    X(LIGHT_FINE, 2, "the digits that the choice of a light leaves open; which shadow ray coverage stops")             \
     X(BSDF, 2, "direction of a lobe")                                                                                  \
     X(LOBE, 2, "which lobe; whether the path goes on")                                                                 \
     X(COVERAGE, 1, "whether a surface of partial coverage is hit")

@@ -187,11 +187,12 @@ static unsigned mask_of(material_kind kind) {
 static void connect(const path_context *c, path *p, const hit *h, const shading *s, unsigned mask) {
     const world *w = c->world;
     const light_table *t = &w->lights;
-    vec2 place = draw(c, p, SAMPLE_LIGHT), pick = draw(c, p, SAMPLE_LIGHT_PICK);
+    vec2 place = draw(c, p, SAMPLE_LIGHT), fine = draw(c, p, SAMPLE_LIGHT_FINE);
     float rest;
-    uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, pick.x, &rest);
+    uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, place.x, fine.x, &rest);
     light l = t->lights[k];
-    if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, place, &l);
+    place.x = rest;
+    if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, place, fine.x, &l);
     light_sampled r = light_sample(KIND(LIGHT_KINDS) - 1, &l, s->position, place);
     if (l.texture) {
         vec2 at = warp_triangle(place);
@@ -212,7 +213,7 @@ static void connect(const path_context *c, path *p, const hit *h, const shading 
     uint32_t visible = RAY_STOPPED;
     trace_counts counts = {0};
     ray_lanes ray = {&n.origin.x, &n.origin.y, &n.origin.z, &n.direction.x, &n.direction.y, &n.direction.z,
-                     NULL, &n.far, &pick.y, NULL, 1};
+                     NULL, &n.far, &fine.y, NULL, 1};
     accel_visible(w, &ray, &visible, &counts);
     if (visible == RAY_REACHES) p->radiance = v3_add(p->radiance, n.contribution);
 }
