@@ -69,7 +69,7 @@ check_libraries() {
   check_library 'opensubdiv/' 'importers/subdiv/'
   check_library 'OpenColorIO/' 'color/'
   check_library 'png\.h|jpeglib|jerror|tiffio|webp/|openexr|OpenEXR' 'image/'
-  check_library 'jansson' '(job|cli|importers/gltf)/'
+  check_library 'jansson' '(job|cli)/'
 }
 
 check_cpp() {
