@@ -19,6 +19,7 @@ typedef struct cli_args {
     kiln_job *job; /* has the options that were given */
     cli_talk talk;
     const char *scene; /* the one positional argument; NULL: none */
+    bool picture_on_stdout;
 } cli_args;
 
 typedef struct cli_command {

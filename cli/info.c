@@ -46,7 +46,7 @@ static void print_info(const char *json, kiln_text *out) {
     const char *name;
     text_append(out, "Versions\n");
     json_object_foreach((json_t *)member(root, "versions"), name, version)
-        text_format(out, "  %-13s%s\n", name, json_string_value(version));
+        text_format(out, "  %-14s %s\n", name, json_string_value(version));
     print_machine(out, member(root, "machine"));
     print_color(out, member(root, "color"));
     text_append(out, "\nFormats\n");

@@ -6,7 +6,7 @@
 #include "cli/json_text.h"
 
 /* Rows of a list that are shown unless all are asked for. */
-enum { SHOWN = 40, NAME_WIDTH_MAX = 40 };
+enum { SHOWN = 40, NAME_WIDTH_MAX = 64 };
 
 typedef struct printer {
     kiln_text *out;

@@ -98,9 +98,10 @@ static void append_time(kiln_text *out, double seconds) {
     else text_format(out, "%ld:%02ld", s / 60, s % 60);
 }
 
+/* Numbers keep their columns, so that nothing jumps. */
 static void append_facts(kiln_text *out, const kiln_progress *p) {
-    text_format(out, " %3.0f%%  %u spp", 100 * p->fraction, p->spp_done);
-    if (p->error >= 0) text_format(out, "  error %.2f%%", 100 * p->error);
+    text_format(out, " %3.0f%%  %5u spp", 100 * p->fraction, p->spp_done);
+    if (p->error >= 0) text_format(out, "  error %5.2f%%", 100 * p->error);
     if (p->seconds_left >= 0) {
         text_append(out, "  ");
         append_time(out, p->seconds_left);
@@ -113,11 +114,13 @@ static size_t terminal_width(void) {
     return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col ? size.ws_col : 80;
 }
 
+enum { FACTS_WIDTH = 50 };
+
 static void draw_bar(const kiln_progress *p) {
     kiln_text facts = {0}, line = {0};
     append_facts(&facts, p);
-    size_t width = terminal_width(), room = width > facts.length + 12 ? width - facts.length - 4 : 0;
-    size_t cells = room > 40 ? 40 : room;
+    size_t width = terminal_width(), cells = width > FACTS_WIDTH + 10 ? width - FACTS_WIDTH : 0;
+    if (cells > 40) cells = 40;
     text_append(&line, "\r");
     if (cells) {
         text_append(&line, "[");

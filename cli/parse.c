@@ -63,6 +63,7 @@ static bool unknown(const parser *p, const char *argument, size_t length) {
 }
 
 static bool set(parser *p, const option_row *row, bool talk, const char *value) {
+    if (!talk && strcmp(row->name, "output") == 0 && strcmp(value, "-") == 0) p->args->picture_on_stdout = true;
     if (!talk) return kiln_job_set(p->args->job, row->name, value, p->report);
     kiln_text flag = {0};
     text_format(&flag, "--%s", row->name);
@@ -142,5 +143,8 @@ bool cli_parse(const cli_command *command, int count, char **arguments, cli_args
         if (args->talk.help) break; /* whatever else is wrong */
     }
     arena_free(&arena);
+    if (done && args->picture_on_stdout && args->talk.json)
+        return report_error(report, KILN_CODE_USAGE, NULL, "write the statistics to a file with --stats FILE.json",
+                            "--json and -o - both want standard output");
     return done;
 }

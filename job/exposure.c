@@ -14,11 +14,11 @@ static int compare(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The middle of what is lit becomes a middle grey, unless that would burn out the bright part: its 95th percentile may
- * reach twice white, which views with a shoulder still show. What is a thousandth of that lies in shadow, and does not
+/* The middle of what is lit becomes a middle grey, unless that would burn out the bright part: its 95th percentile
+ * stays below white. What is a thousandth of that lies in shadow, and does not
  * count. Whole tenths of a stop: the number that the log tells gives the same picture. */
 double exposure_of(float *luminance, size_t count) {
-    const double middle = 0.18, brightest = 2, shadow = 1e-3;
+    const double middle = 0.18, brightest = 1, shadow = 1e-3;
     qsort(luminance, count, sizeof *luminance, compare);
     size_t first = 0;
     while (first < count && !(luminance[first] > 0)) first++;

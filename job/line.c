@@ -20,8 +20,13 @@ bool run_film(job_run *r) {
     uint64_t pixels = o->crop[2] ? (uint64_t)(o->crop[2] - o->crop[0]) * (o->crop[3] - o->crop[1])
                                  : (uint64_t)r->view.width * r->view.height;
     uint64_t bytes = kiln_film_size(&r->film_desc) + pixels * OUTPUT_BYTES_PER_PIXEL, machine = machine_memory();
-    bool cropped_inside = o->crop[2] <= r->view.width && o->crop[3] <= r->view.height;
-    if (cropped_inside && machine && bytes > machine / 4 * 3)
+    if (o->crop[2] > r->view.width || o->crop[3] > r->view.height) {
+        kiln_where where = where_root("--crop");
+        return report_error(r->report, KILN_CODE_USAGE, &where, "give X0,Y0,X1,Y1 in pixels, right and bottom exclusive",
+                            "%u,%u,%u,%u is not a part of %u x %u pixels", o->crop[0], o->crop[1], o->crop[2], o->crop[3],
+                            r->view.width, r->view.height);
+    }
+    if (machine && bytes > machine / 4 * 3)
         return report_error(r->report, KILN_CODE_LIMIT, NULL, "render a smaller picture, or crops of it",
                             "%u x %u pixels need %.1f GB, and the machine has %.1f GB", r->view.width, r->view.height,
                             (double)bytes * 1e-9, (double)machine * 1e-9);

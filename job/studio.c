@@ -19,13 +19,13 @@ typedef struct box {
     double radiance;
 } box;
 
-/* The radiances make a grey card that faces the camera as bright as under a uniform light of 1, the same card turned to
- * the key light 1.3 times that, and turned away half (tests/job/test_studio.c): base colours come out as authored. */
+/* A grey card that faces the camera is as bright as under a uniform light of 1, so that base colours come out as
+ * authored; turned to the key light it has 1.3 times that, turned away two thirds (tests/job/test_studio.c). */
 static const box boxes[] = {
-    {-42, 42, 0.50, 0.45, 0.10, 3.1},  /* key */
-    {62, 18, 0.40, 0.70, 0.20, 1.0},   /* fill */
-    {160, 58, 0.80, 0.22, 0.10, 3.0},  /* rim, from behind */
-    {0, 88, 0.60, 0.60, 0.25, 1.0},    /* overhead */
+    {-45, 36, 0.50, 0.45, 0.10, 3.2},  /* key */
+    {62, 15, 0.40, 0.70, 0.20, 1.0},   /* fill */
+    {160, 55, 0.70, 0.16, 0.10, 2.4},  /* rim, from behind */
+    {0, 88, 0.50, 0.50, 0.25, 0.5},    /* overhead */
 };
 
 static double smooth_step(double from, double to, double x) {
@@ -37,7 +37,7 @@ static double smooth_step(double from, double to, double x) {
 /* The cyclorama: light behind the scene with a glow at the horizon, greyer below, a dim room behind the camera. */
 static double room(dvec3 d) {
     double behind = smooth_step(-0.5, 0.6, -d.z), height = d.y;
-    double wall = height > 0 ? 0.82 - 0.42 * smooth_step(0, 0.9, height) : 0.82 - 0.24 * smooth_step(0, 0.9, -height);
+    double wall = height > 0 ? 0.82 - 0.52 * smooth_step(0, 0.9, height) : 0.82 - 0.24 * smooth_step(0, 0.9, -height);
     double hall = height > 0 ? 0.24 : 0.24 + 0.20 * smooth_step(0, 0.7, -height);
     return hall + (wall - hall) * behind;
 }
