@@ -17,5 +17,7 @@ target_include_directories(kiln_shared INTERFACE ${CMAKE_SOURCE_DIR}/include)
 include(GNUInstallDirs)
 install(TARGETS kiln_shared kiln_program)
 install(DIRECTORY include/kiln TYPE INCLUDE)
+# Found from where the file itself is, so that `cmake --install --prefix` is free to choose.
+file(RELATIVE_PATH kiln_pc_to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
 configure_file(cmake/kiln.pc.in kiln.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/kiln.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
