@@ -250,6 +250,24 @@ void world_place_instance(world *w, const kiln_instance *from, const kiln_mesh *
     for (int g = 0; g < 2; g++) to->triangle_base[g] = w->prototypes[prototype].first[g];
 }
 
+static bool is_normal_mapped(const world *w, const kiln_mesh *m) {
+    if (!m->face_materials) return w->materials[m->material].texture[SLOT_NORMAL] != 0;
+    for (uint32_t f = 0; f < m->face_count; f++)
+        if (w->materials[m->face_materials[f]].texture[SLOT_NORMAL]) return true;
+    return false;
+}
+
+/* Importers generate tangents; a program that builds its own scene may have forgotten them. */
+static void warn_of_missing_tangents(const build *b, kiln_report *report) {
+    for (uint32_t i = 0; i < b->scene->mesh_count; i++) {
+        const kiln_mesh *m = b->shapes[i].mesh;
+        if (!m || mesh_primvar(m, KILN_PRIMVAR_TANGENT, 0) || !is_normal_mapped(b->world, m)) continue;
+        kiln_where where = where_root(m->name);
+        report_warning(report, KILN_CODE_GEOMETRY, &where, "give the mesh a KILN_PRIMVAR_TANGENT",
+                       "a mesh without tangents has a material with a normal map: the map is left out");
+    }
+}
+
 static bool has_colors(const build *b) {
     for (uint32_t i = 0; i < b->scene->mesh_count; i++)
         if (b->shapes[i].mesh && mesh_primvar(b->shapes[i].mesh, KILN_PRIMVAR_COLOR, 0)) return true;
@@ -260,6 +278,7 @@ static bool run(build *b, uint32_t threads, kiln_report *report) {
     world *w = b->world;
     choose_baking(b);
     w->has_colors = has_colors(b);
+    if (w->slots & 1u << SLOT_NORMAL) warn_of_missing_tangents(b, report);
     threads_for(threads, b->scene->mesh_count, make_shape, b);
     b->placements = array_alloc((size_t)b->scene->instance_count + b->prototype_count, sizeof *b->placements);
     b->prototype_centers = array_alloc(b->prototype_count, sizeof *b->prototype_centers);
