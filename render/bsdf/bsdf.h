@@ -59,9 +59,10 @@ typedef struct bsdf {
 } bsdf;
 
 KERNEL int bsdf_is_mirror(float alpha) { return alpha < GGX_ALPHA_MIN; }
-/* Refraction spreads less than reflection: by about alpha |η − 1|. */
+/* Refraction spreads less than reflection, and its half vector resolves less: by |η − 1| over the larger index. The same
+ * from either side. */
 KERNEL int bsdf_is_straight(const bsdf *b) {
-    float spread = fabsf(b->eta - 1.0f);
+    float spread = fabsf(b->eta - 1.0f) / fm_max(b->eta, 1.0f);
     return b->alpha * (b->thin > 0.5f ? 1.0f : spread) < GGX_ALPHA_MIN;
 }
 
@@ -86,10 +87,13 @@ KERNEL vec3 bsdf_reflection_fresnel(unsigned mask, const bsdf *b, float c) {
 KERNEL float bsdf_full(float mu, float alpha, albedo_node roughness) {
     return fm_lerp(albedo_full(mu, alpha, roughness), 1.0f, bsdf_is_mirror(alpha) ? 1.0f : 0.0f);
 }
+/* The mean of Schlick's (1 − cos)^5 over what is reflected, seen from mu. */
+KERNEL float bsdf_schlick_share(const bsdf *b, float mu, albedo_node roughness) {
+    return fm_lerp(albedo_schlick_share(mu, roughness), fresnel_schlick_weight(mu), bsdf_is_mirror(b->alpha) ? 1.0f : 0.0f);
+}
 /* What the coat reflects in all, seen from mu: full is bsdf_full there. */
 KERNEL vec3 bsdf_coat_albedo(const bsdf *b, float mu, float full, albedo_node roughness) {
-    float share = fm_lerp(albedo_schlick_share(mu, roughness), fresnel_schlick_weight(mu),
-                          bsdf_is_mirror(b->alpha) ? 1.0f : 0.0f);
+    float share = bsdf_schlick_share(b, mu, roughness);
     return v3_scale(v3_madd(b->f0, share, v3_sub(v3_splat(b->f90), b->f0)), full);
 }
 
@@ -192,14 +196,17 @@ KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo, const float *sli
     return b;
 }
 
-/* Directional albedo at wo, with each Fresnel term taken at wo itself: what a denoiser wants to know. */
-KERNEL vec3 bsdf_albedo(unsigned mask, const bsdf *b) {
+/* Directional albedo at wo: what a denoiser wants to know. The interface's Fresnel term is taken about where visible
+ * microfacets face wo. */
+KERNEL vec3 bsdf_albedo(unsigned mask, const bsdf *b, const float *slices) {
     if (!(mask & BSDF_GLOSSY)) return b->wide;
-    float full = bsdf_full(b->wo.z, b->alpha, albedo_roughness_node(b->roughness));
-    vec3 sum = v3_madd(b->wide, full, bsdf_reflection_fresnel(mask, b, b->wo.z));
-    if (mask & BSDF_TRANSMISSIVE)
-        sum = v3_madd(sum, full, v3_mul(b->tint, v3_sub(v3_splat(1.0f), bsdf_interface_fresnel(b, b->wo.z))));
-    return sum;
+    albedo_node roughness = albedo_roughness_node(b->roughness);
+    float full = bsdf_full(b->wo.z, b->alpha, roughness), share = bsdf_schlick_share(b, b->wo.z, roughness);
+    vec3 sum = v3_madd(b->wide, full, v3_madd(b->reflect0, share, b->reflect1));
+    if (!(mask & BSDF_TRANSMISSIVE)) return sum;
+    float kept = 1.0f - bsdf_interface_loss(b, slices, b->near_slice, b->wo.z, full, roughness);
+    vec3 f = bsdf_interface_fresnel(b, b->wo.z + b->alpha * (1.0f - b->wo.z)), passes = v3_mul(b->tint, v3_sub(v3_splat(1.0f), f));
+    return v3_madd(sum, kept, v3_madd(passes, b->interface, f));
 }
 
 /* f(wo, wi) |cos θi| of everything that is not a delta, and the density with which sample chooses wi. */

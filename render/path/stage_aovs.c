@@ -6,7 +6,7 @@ KERNEL void write_albedo(unsigned mask, const path_context *c, batch *b, lane_ra
     path_output *o = &b->out;
     for (uint32_t i = lanes.first; i < lanes.end; i++) {
         shading p = lane_shading(mask, s, &b->scratch, i, c->world->slices);
-        vec3 a = bsdf_albedo(mask, &p.bsdf);
+        vec3 a = bsdf_albedo(mask, &p.bsdf, c->world->slices);
         o->albedo[0][s->slot[i]] = a.x, o->albedo[1][s->slot[i]] = a.y, o->albedo[2][s->slot[i]] = a.z;
     }
 }

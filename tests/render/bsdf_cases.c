@@ -91,7 +91,9 @@ bsdf_sampled probe_sample(const probe *p, float lobe, vec2 direction) {
 }
 
 vec3 probe_albedo(const probe *p) {
-    return p->mask == D ? bsdf_albedo(D, &p->bsdf) : p->mask == G ? bsdf_albedo(G, &p->bsdf) : bsdf_albedo(T, &p->bsdf);
+    return p->mask == D   ? bsdf_albedo(D, &p->bsdf, p->slices)
+           : p->mask == G ? bsdf_albedo(G, &p->bsdf, p->slices)
+                          : bsdf_albedo(T, &p->bsdf, p->slices);
 }
 
 vec3 direction_at(double cosine, double turns) {
