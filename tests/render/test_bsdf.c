@@ -11,9 +11,7 @@
 
 #include <cmocka.h>
 
-#include "base/mat.h"
-
-#include "tests/render/bsdf_cases.h"
+#include "tests/render/bsdf_chart.h"
 #include "tests/render/statistics.h"
 
 #define LEVEL 1e-3
@@ -60,125 +58,6 @@ static void for_each_setting(void (*check)(setting *, double tests)) {
     assert_int_equal(failures, 0);
 }
 
-/* Directions are counted by their half vectors, which resolve a microfacet lobe of any width. With x = tan² of the half
- * vector's angle, GGX spreads evenly over x/(α² + x); a third of the rings are spaced so, the others for wide lobes and
- * for what grazes. */
-enum { RINGS = 9, SECTORS = 8, FINE = 100, ROWS = RINGS * FINE, SIDE = RINGS * SECTORS, BEYOND = 2 * SIDE, CELLS };
-#define WIDE2 0.25
-#define GRAZING2 20.0
-
-typedef struct chart {
-    const probe *probe;
-    double a2; /* α² */
-    dvec3 wo;
-    bool refracts; /* below, half vectors are those of refraction */
-    double x[ROWS]; /* in the middle of every hundredth of a ring */
-} chart;
-
-static dvec3 to_double(vec3 v) { return (dvec3){(double)v.x, (double)v.y, (double)v.z}; }
-static vec3 to_single(dvec3 v) { return v3((float)v.x, (float)v.y, (float)v.z); }
-
-static double ring_of(const chart *c, double x) {
-    return (x / (c->a2 + x) + x / (WIDE2 + x) + x / (GRAZING2 + x)) / 3;
-}
-static double bell(double width2, double x) { return width2 / ((width2 + x) * (width2 + x)); }
-static double ring_slope(const chart *c, double x) { return (bell(c->a2, x) + bell(WIDE2, x) + bell(GRAZING2, x)) / 3; }
-
-static double tan2_of(const chart *c, double ring) {
-    double low = 1e-14, high = 1e8; /* bisected by their geometric means */
-    for (int i = 0; i < 34; i++) {
-        double middle = sqrt(low * high);
-        *(ring_of(c, middle) < ring ? &low : &high) = middle;
-    }
-    return low;
-}
-
-static void chart_make(chart *c, const probe *p) {
-    bool solid = p->mask & BSDF_TRANSMISSIVE && p->bsdf.thin < 0.5f, refracts = solid && !bsdf_is_straight(&p->bsdf);
-    bool glossy = p->mask && (refracts || !bsdf_is_mirror(p->bsdf.alpha));
-    double alpha = glossy ? fmax((double)p->bsdf.alpha, (double)GGX_ALPHA_MIN) : 0.3;
-    *c = (chart){.probe = p, .a2 = alpha * alpha, .wo = to_double(p->bsdf.wo), .refracts = refracts};
-    for (int row = 0; row < ROWS; row++) c->x[row] = tan2_of(c, (row + 0.5) / ROWS);
-}
-
-/* The direction that the half vector leads to, above (0) or below (1), and the solid angle that it sweeps for each of the
- * half vector's; false: none. */
-static bool follow(const chart *c, dvec3 h, int below, dvec3 *wi, double *stretch) {
-    double co = d3_dot(c->wo, h), eta = (double)c->probe->bsdf.eta;
-    if (!(co > 0)) return false;
-    if (below && c->refracts) {
-        double k = 1 - (1 - co * co) / (eta * eta), t = sqrt(fmax(k, 0));
-        *wi = d3_sub(d3_scale(h, co / eta - t), d3_scale(c->wo, 1 / eta));
-        *stretch = t > 0 ? pow(co - eta * t, 2) / (eta * eta * t) : 0; /* Walter et al. 2007, eq. 17: wi·h = −t */
-        return k > 0 && wi->z < 0;
-    }
-    *wi = d3_sub(d3_scale(h, 2 * co), c->wo);
-    *stretch = 4 * co;
-    if (!(wi->z > 0)) return false;
-    if (below) wi->z = -wi->z;
-    return true;
-}
-
-static int cell_of(const chart *c, dvec3 wi) {
-    int below = wi.z < 0;
-    dvec3 h = d3_add(c->wo, (dvec3){wi.x, wi.y, fabs(wi.z)});
-    if (below && c->probe->bsdf.thin < 0.5f) {
-        h = d3_add(c->wo, d3_scale(wi, (double)c->probe->bsdf.eta));
-        if (h.z < 0) h = d3_scale(h, -1);
-        if (!c->refracts || !(d3_dot(c->wo, h) > 0 && d3_dot(wi, h) < 0)) return BEYOND;
-    }
-    double turn = atan2(h.y, h.x) / (2 * M_PI);
-    int ring = (int)(RINGS * ring_of(c, (h.x * h.x + h.y * h.y) / (h.z * h.z)));
-    int sector = (int)(SECTORS * (turn - floor(turn)));
-    ring = ring < RINGS ? ring : RINGS - 1;
-    return below * SIDE + ring * SECTORS + (sector < SECTORS ? sector : SECTORS - 1);
-}
-
-/* What pdf and evaluate say of each cell, by midpoints. */
-typedef struct expectation { double pdf[CELLS], value[3]; } expectation;
-
-static void add(expectation *e, const chart *c, int cell, dvec3 wi, double weight) {
-    bsdf_value v = probe_evaluate(c->probe, to_single(wi));
-    e->pdf[cell] += weight * (double)v.pdf;
-    e->value[0] += weight * (double)v.value.x;
-    e->value[1] += weight * (double)v.value.y;
-    e->value[2] += weight * (double)v.value.z;
-}
-
-/* A lattice: its rows are staggered, for the horizon often runs along a ring. */
-static void add_by_half_vectors(expectation *e, const chart *c, int below) {
-    for (int row = 0; row < ROWS; row++) {
-        double x = c->x[row], z = 1 / sqrt(1 + x), r = sqrt(x) * z;
-        double angle = 0.5 * z * z * z / ring_slope(c, x) * 2 * M_PI / (ROWS * SECTORS); /* that the half vector stands for */
-        for (int sector = 0; sector < SECTORS; sector++) {
-            double stretch, phi = 2 * M_PI * (sector + (row * 7 % 10 + 0.5) / 10) / SECTORS;
-            dvec3 wi, h = {r * cos(phi), r * sin(phi), z};
-            if (follow(c, h, below, &wi, &stretch))
-                add(e, c, below * SIDE + row / FINE * SECTORS + sector, wi, angle * stretch);
-        }
-    }
-}
-
-/* Directions below that no half vector leads to. */
-static void add_beyond(expectation *e, const chart *c) {
-    enum { N = 64 };
-    for (int i = 0; i < N; i++)
-        for (int j = 0; j < N; j++) {
-            double z = sqrt((i + 0.5) / N), r = sqrt(1 - z * z), phi = 2 * M_PI * (j + 0.5) / N;
-            dvec3 wi = {r * cos(phi), r * sin(phi), -z};
-            if (cell_of(c, wi) == BEYOND) add(e, c, BEYOND, wi, M_PI / z / (N * N));
-        }
-}
-
-static expectation expect(const chart *c) {
-    expectation e = {0};
-    bool transmissive = c->probe->mask & BSDF_TRANSMISSIVE, thin = c->probe->bsdf.thin > 0.5f;
-    add_by_half_vectors(&e, c, 0);
-    if (transmissive && (thin || c->refracts)) add_by_half_vectors(&e, c, 1);
-    if (transmissive && !thin) add_beyond(&e, c);
-    return e;
-}
-
 static float largest(vec3 v) { return fmaxf(fmaxf(v.x, v.y), v.z); }
 
 static bsdf_sampled draw(const setting *s, stream *random) {
@@ -199,30 +78,32 @@ enum { SAMPLES = 4000 };
 static void check_counts(setting *s, double tests) {
     chart c;
     chart_make(&c, &s->probe);
-    expectation e = expect(&c);
-    double counts[CELLS + 1] = {0}, wanted[CELLS + 1], all = 0;
+    chart_sums e = chart_integrate(&c);
+    dvec3 sum = d3_add(e.value[0], e.value[1]);
+    double integral[3] = {sum.x, sum.y, sum.z};
+    double counts[CHART_CELLS + 1] = {0}, wanted[CHART_CELLS + 1], all = 0;
     tally means[3] = {{0}};
     for (int n = 0; n < SAMPLES; n++) {
         bsdf_sampled r = draw(s, &s->random);
         bool lost = r.delta || is_absorbed(s, &r);
-        counts[lost ? CELLS : cell_of(&c, to_double(r.wi))]++;
+        counts[lost ? CHART_CELLS : chart_cell(&c, (dvec3){(double)r.wi.x, (double)r.wi.y, (double)r.wi.z})]++;
         tally_add(&means[0], r.delta ? 0 : (double)r.multiplier.x);
         tally_add(&means[1], r.delta ? 0 : (double)r.multiplier.y);
         tally_add(&means[2], r.delta ? 0 : (double)r.multiplier.z);
     }
-    for (int i = 0; i < CELLS; i++) all += e.pdf[i], wanted[i] = SAMPLES * e.pdf[i];
-    wanted[CELLS] = SAMPLES * fmax(1 - all, 0);
-    double lost = counts[CELLS] / SAMPLES, error = sqrt(lost * (1 - lost) / SAMPLES) + 1e-9;
+    for (int i = 0; i < CHART_CELLS; i++) all += e.pdf[i], wanted[i] = SAMPLES * e.pdf[i];
+    wanted[CHART_CELLS] = SAMPLES * fmax(1 - all, 0);
+    double lost = counts[CHART_CELLS] / SAMPLES, error = sqrt(lost * (1 - lost) / SAMPLES) + 1e-9;
     if (normal_tail(fmax(fabs(lost - (1 - all)) - QUADRATURE, 0) / error) < sidak(LEVEL, tests))
         complain(s, "pdf integrates to %.5f, and %.5f come to nothing", all, lost);
-    double p = chi_square_p(counts, wanted, CELLS + 1);
+    double p = chi_square_p(counts, wanted, CHART_CELLS + 1);
     if (p < sidak(LEVEL, tests)) complain(s, "sample does not follow pdf (p = %g)", p);
     for (int k = 0; k < 3; k++) {
         /* Of events that are expected less than twenty times the samples tell no variance: they are Poisson's. */
-        double least = sqrt(fmin(e.value[k], 20.0 / SAMPLES) / SAMPLES), mean = means[k].mean;
-        double off = fmax(fabs(mean - e.value[k]) - QUADRATURE * e.value[k] - 1e-5, 0);
+        double least = sqrt(fmin(integral[k], 20.0 / SAMPLES) / SAMPLES), mean = means[k].mean;
+        double off = fmax(fabs(mean - integral[k]) - QUADRATURE * integral[k] - 1e-5, 0);
         if (normal_tail(off / fmax(tally_error(&means[k]), least + 1e-9)) < sidak(LEVEL, 3 * tests))
-            complain(s, "the mean multiplier is %.5f ± %.5f, the integral %.5f", mean, tally_error(&means[k]), e.value[k]);
+            complain(s, "the mean multiplier is %.5f ± %.5f, the integral %.5f", mean, tally_error(&means[k]), integral[k]);
     }
 }
 
@@ -251,7 +132,8 @@ static void check_one_by_one(setting *s, double tests) {
                 complain(s, "multiplier · pdf misses the value by %g of %g; pdf %g, %g", (double)off,
                          (double)largest(v.value), (double)r.pdf, (double)v.pdf);
         }
-        if (!is_absorbed(s, &r) && fabsf(v3_length(r.wi) - 1) > 1e-5f) complain(s, "a direction of length %.7f", (double)v3_length(r.wi));
+        if (!is_absorbed(s, &r) && fabsf(v3_length(r.wi) - 1) > 1e-5f)
+            complain(s, "a direction of length %.7f", (double)v3_length(r.wi));
     }
 }
 
