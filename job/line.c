@@ -156,7 +156,7 @@ bool run_check_strict(job_run *r) {
 }
 
 bool run_missed_noise(const job_run *r) {
-    bool asked = job_given(r->options, noise) && r->rules.noise > 0;
+    bool asked = job_given(r->options, noise_percent) && r->rules.noise > 0;
     bool reached = r->stats.stop == KILN_STOP_NOISE || (r->error.known && sqrt(r->error.relmse) <= r->rules.noise);
     return r->rendered && asked && !reached;
 }

@@ -27,10 +27,6 @@ static bool parse_texts(const option_row *row, const char *text, void *field, ki
     return *text != '\0';
 }
 
-static bool parse_in_range(const option_row *row, const char *text, double *value) {
-    return text_to_double(text, value) && *value >= row->low && *value <= row->high;
-}
-
 static bool parse_count(const option_row *row, const char *text, void *field, kiln_arena *arena) {
     (void)arena;
     uint64_t value;
@@ -56,7 +52,10 @@ static void print_integer(const option_row *row, const void *field, kiln_text *o
 
 static bool parse_number(const option_row *row, const char *text, void *field, kiln_arena *arena) {
     (void)arena;
-    return parse_in_range(row, text, field);
+    double value;
+    if (!text_to_double(text, &value) || value < row->low || value > row->high) return false;
+    *(double *)field = value;
+    return true;
 }
 
 void option_print_number(double value, kiln_text *out) {

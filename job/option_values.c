@@ -62,16 +62,13 @@ static bool parse_percent(const option_row *row, const char *text, void *field, 
     bool signed_ = strchr(text, '%') != NULL;
     if (!take(&text, '%', part) || (signed_ && *text) || !text_to_double(part, &percent)) return false;
     if (!(percent >= 0 && percent <= 100)) return false;
-    *(double *)field = percent / 100;
+    *(double *)field = percent;
     return true;
 }
 
 static void print_percent(const option_row *row, const void *field, kiln_text *out) {
     (void)row;
-    double share = *(const double *)field, percent = share * 100;
-    /* The percentage whose hundredth is the same share: rounding may have moved it by a step. */
-    for (int i = -2; i <= 2 && percent / 100 != share; i++) percent = share * 100 * (1 + i * 0x1p-52);
-    option_print_number(percent, out);
+    option_print_number(*(const double *)field, out);
     text_append(out, "%");
 }
 

@@ -32,8 +32,8 @@ bool job_options_set(job_options *o, const char *name, const char *text, const k
 }
 
 bool job_rules_choose(const job_options *o, job_rules *rules, kiln_report *report) {
-    *rules = (job_rules){o->spp, o->noise, o->budget_seconds};
-    bool any = job_given(o, spp) || job_given(o, noise) || job_given(o, budget_seconds);
+    *rules = (job_rules){o->spp, o->noise_percent / 100, o->budget_seconds};
+    bool any = job_given(o, spp) || job_given(o, noise_percent) || job_given(o, budget_seconds);
     if (!any) *rules = (job_rules){.spp = 1024, .noise = 0.03};
     return rules->spp || rules->noise > 0 || rules->budget_seconds > 0 ||
            report_error(report, KILN_CODE_USAGE, NULL, "give --spp N or --budget DURATION too",

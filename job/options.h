@@ -32,7 +32,7 @@ typedef struct job_options {
     uint32_t size[2]; /* 0: not given */
     uint32_t crop[4]; /* all 0: the whole picture */
     uint32_t spp;     /* 0: no such rule; job_rules makes the defaults of these three */
-    double noise;     /* a share, 0.03; 0: off */
+    double noise_percent;  /* 0: off */
     double budget_seconds; /* 0: none */
     uint64_t seed;
     uint32_t threads; /* 0: all */
@@ -74,7 +74,8 @@ bool job_options_set(job_options *, const char *name, const char *text, const ki
 /* The rules that end a render. */
 typedef struct job_rules {
     uint32_t spp;
-    double noise, budget_seconds;
+    double noise; /* a share, 0.03 */
+    double budget_seconds;
 } job_rules;
 
 /* Giving any rule replaces the defaults of all. False: no rule is left that would end the render. */

@@ -1,0 +1,81 @@
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <jansson.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/cli/run.h"
+
+static void assert_has(const char *text, const char *part) {
+    if (!strstr(text, part)) fail_msg("'%s' is missing in\n%s", part, text);
+}
+
+static void assets_are_shown(void **state) {
+    const place *p = *state;
+    result r = run(p, "inspect", PAIR("light_spot_b"));
+    assert_int_equal(r.code, 0);
+    assert_int_equal(r.err_size, 0);
+    static const char *const parts[] = {"glTF 2.0", "KHR_lights_punctual", "triangles", "size ", "Instances", "Meshes",
+                                        "Materials", "Lights", "spot", " cd", "Cameras", "Rendering", "1024 x 1024", "memory "};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) assert_has(r.out, parts[i]);
+    assert_int_equal(files_in(p), 0);
+    result_free(&r);
+}
+
+static void textures_are_shown_with_their_transfer(void **state) {
+    result r = run(*state, "inspect", PAIR("base_color_texture_a"));
+    assert_int_equal(r.code, 0);
+    assert_has(r.out, "base_color ");
+    assert_has(r.out, ", srgb, uv 0");
+    assert_has(r.out, "PNG");
+    result_free(&r);
+}
+
+static void json_has_the_same(void **state) {
+    result r = run(*state, "inspect", PAIR("light_spot_b"), "--json", "--size", "64x32");
+    assert_int_equal(r.code, 0);
+    json_t *json = json_loads(r.out, 0, NULL);
+    assert_non_null(json);
+    const json_t *rendering = json_object_get(json, "rendering");
+    assert_int_equal(json_integer_value(json_object_get(rendering, "width")), 64);
+    assert_true(json_array_size(json_object_get(json, "lights")) > 0);
+    json_decref(json);
+    result_free(&r);
+}
+
+static void warnings_are_on_standard_error_and_strict_counts_them(void **state) {
+    result r = run(*state, "inspect", PAIR("mode_lines_b"));
+    assert_int_equal(r.code, 0);
+    assert_has(r.err, "warning: ");
+    result_free(&r);
+    r = run(*state, "inspect", PAIR("mode_lines_b"), "--strict");
+    assert_int_equal(r.code, 1);
+    assert_int_equal(r.out_size, 0);
+    result_free(&r);
+}
+
+static void the_machine_is_shown(void **state) {
+    result r = run(*state, "info");
+    assert_int_equal(r.code, 0);
+    static const char *const parts[] = {"Embree", "OpenColorIO", "OpenSubdiv", "threads", "kernels", "embedded kiln config",
+                                        "Khronos PBR Neutral", "ACES", ".glb", ".exr"};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) assert_has(r.out, parts[i]);
+    result_free(&r);
+    r = run(*state, "info", "--json");
+    json_t *json = json_loads(r.out, 0, NULL);
+    assert_non_null(json_object_get(json, "versions"));
+    json_decref(json);
+    result_free(&r);
+    assert_refused(*state, 3, "does not exist", "info", "--ocio", "missing.ocio");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {CLI_TEST(assets_are_shown), CLI_TEST(textures_are_shown_with_their_transfer),
+                                       CLI_TEST(json_has_the_same), CLI_TEST(warnings_are_on_standard_error_and_strict_counts_them),
+                                       CLI_TEST(the_machine_is_shown)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
