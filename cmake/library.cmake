@@ -9,8 +9,10 @@ target_link_libraries(kiln_shared PRIVATE ${kiln_modules})
 list(JOIN kiln_modules "," kiln_whole)
 set_target_properties(kiln_shared PROPERTIES LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,${kiln_whole}")
 # The standard library's templates come with default visibility, whatever the compiler's flags say.
-target_link_options(kiln_shared PRIVATE LINKER:--version-script=${CMAKE_CURRENT_LIST_DIR}/kiln.map
-  $<$<NOT:$<BOOL:${KILN_SANITIZE}>>:LINKER:--no-undefined>) # sanitizers come with the program
+target_link_options(kiln_shared PRIVATE LINKER:--version-script=${CMAKE_CURRENT_LIST_DIR}/kiln.map)
+if(NOT KILN_SANITIZE) # whose symbols come with the program
+  target_link_options(kiln_shared PRIVATE LINKER:--no-undefined)
+endif()
 set_target_properties(kiln_shared PROPERTIES LINK_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/kiln.map)
 target_include_directories(kiln_shared INTERFACE ${CMAKE_SOURCE_DIR}/include)
 
