@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 static bool draw(const char *asset, const char *picture, kiln_report *report) {
-    enum { SIDE = 512 };
+    enum { SIDE = 320 };
     kiln_scene *scene = NULL;
     kiln_renderer *renderer = NULL;
     kiln_film *film = NULL;
@@ -22,7 +22,7 @@ static bool draw(const char *asset, const char *picture, kiln_report *report) {
                kiln_scene_set_studio(scene, framing.azimuth_rad, 1, report) && kiln_scene_commit(scene, report) &&
                kiln_renderer_create(scene, NULL, &renderer, report) &&
                kiln_film_create(&(kiln_film_desc){.width = SIDE, .height = SIDE}, &film, report) &&
-               kiln_render(renderer, &(kiln_render_options){.camera = &camera, .spp = 64}, film, NULL, report) &&
+               kiln_render(renderer, &(kiln_render_options){.camera = &camera, .spp = 32}, film, NULL, report) &&
                kiln_color_create(NULL, &color, report) && kiln_view_create(color, NULL, &view, report) &&
                kiln_film_write(film, color, view, picture, report);
     }

@@ -34,8 +34,8 @@ int main(int argc, char **argv) {
     kiln_scene *scene = kiln_scene_create();
     kiln_job *job = kiln_job_create();
     bool done = argc == 2 && report && scene && job && build(scene, report) &&
-                kiln_job_set(job, "output", argv[1], report) && kiln_job_set(job, "size", "480x360", report) &&
-                kiln_job_set(job, "spp", "64", report) && kiln_job_render_scene(job, scene, "triangle", report);
+                kiln_job_set(job, "output", argv[1], report) && kiln_job_set(job, "size", "320x240", report) &&
+                kiln_job_set(job, "spp", "32", report) && kiln_job_render_scene(job, scene, "triangle", report);
     for (size_t i = 0; report && i < kiln_report_size(report); i++) {
         kiln_message m = kiln_report_message(report, i);
         fprintf(stderr, "%s: %s\n", m.where, m.what);

@@ -19,6 +19,7 @@ static int compare(const void *a, const void *b) {
  * count. Whole tenths of a stop: the number that the log tells gives the same picture. */
 double exposure_of(float *luminance, size_t count) {
     const double middle = 0.18, brightest = 1, shadow = 1e-3;
+    if (!count) return 0;
     qsort(luminance, count, sizeof *luminance, compare);
     size_t first = 0;
     while (first < count && !(luminance[first] > 0)) first++;
