@@ -1,29 +1,25 @@
 #include "render/light/distribution.h"
 
-/* Rounds weight/sum to quanta; what rounding leaves over or takes too much is put on, or taken from, the largest. */
+#include <math.h>
+
+/* Every positive weight gets one quantum, and what it holds above a quantum's worth gets its share of the rest: each is
+ * within a quantum of weight/sum, but for what the many under a quantum cost the others. Shares are differences of running
+ * sums, so that roundings do not add up. */
 static void quantise(const float *weights, uint32_t count, uint32_t *quanta) {
-    double sum = 0;
-    uint32_t largest = 0;
+    double sum = 0, above = 0, before = 0;
+    uint32_t positive = 0, placed = 0;
     for (uint32_t i = 0; i < count; i++) {
         sum += (double)weights[i];
-        if (weights[i] > weights[largest]) largest = i;
+        positive += weights[i] > 0;
     }
-    int64_t left = DISTRIBUTION_QUANTA;
+    double worth = sum / DISTRIBUTION_QUANTA; /* not all weights are worth so much or less: count < DISTRIBUTION_QUANTA */
+    for (uint32_t i = 0; i < count; i++) above += fmax((double)weights[i] - worth, 0);
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t q = (uint32_t)((double)weights[i] / sum * DISTRIBUTION_QUANTA + 0.5);
-        if (weights[i] > 0 && q == 0) q = 1;
-        quanta[i] = q;
-        left -= q;
+        before += fmax((double)weights[i] - worth, 0);
+        uint32_t share = (uint32_t)(before / above * (DISTRIBUTION_QUANTA - positive) + 0.5);
+        quanta[i] = (weights[i] > 0) + share - placed;
+        placed = share;
     }
-    /* Many outcomes under a quantum may have taken more than the largest has: then the large ones pay in turn. */
-    while (left < 0 && -left >= (int64_t)quanta[largest]) {
-        for (uint32_t i = 0; i < count && left < 0; i++)
-            if (quanta[i] > 1) {
-                quanta[i]--;
-                left++;
-            }
-    }
-    quanta[largest] = (uint32_t)((int64_t)quanta[largest] + left);
 }
 
 void distribution_build(const float *weights, uint32_t count, uint32_t *cdf, uint32_t *guide) {
