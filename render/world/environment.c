@@ -5,31 +5,35 @@
 
 #include "render/world/images.h"
 
-/* Radiance of every texel; what is not a radiance (negative, NaN, infinite) is 0. */
+/* Sums and powers of larger ones would not be finite. */
+#define RADIANCE_LIMIT 1e30f
+
+/* Radiance of every texel; what is not a radiance (negative, NaN, infinite, beyond the limit) is 0. */
 static bool load(environment *e, kiln_arena *arena, const kiln_scene *scene, const kiln_decoding *decoding,
                  kiln_report *report) {
     const kiln_environment *from = &scene->environment;
     uint32_t width = 1, height = 1;
     float one[3] = {1, 1, 1}, *rgb = one;
     const float *m = decoding->matrix[KILN_TRANSFER_LINEAR], *c = from->color;
+    kiln_where where = where_root("environment");
     if (from->image) {
-        kiln_where where = where_root("environment");
         if (!image_load_linear(scene_image(scene, from->image), from->transfer, decoding->matrix[from->transfer],
                                &width, &height, &rgb, report))
             return false;
-        size_t bad = 0;
-        for (size_t i = 0; i < 3 * (size_t)width * height; i++)
-            if (!(rgb[i] >= 0 && rgb[i] < INFINITY)) rgb[i] = 0, bad++;
-        if (bad)
-            report_warning(report, KILN_CODE_RANGE, &where, "clean the picture",
-                           "values of the environment are negative or not finite: they count as black");
     }
     float color[3];
     for (int k = 0; k < 3; k++) color[k] = m[3 * k] * c[0] + m[3 * k + 1] * c[1] + m[3 * k + 2] * c[2];
     size_t count = (size_t)width * height;
     e->texels = ARENA_ARRAY(arena, float, 4 * count);
-    for (size_t i = 0; e->texels && i < count; i++)
-        for (size_t k = 0; k < 3; k++) e->texels[4 * i + k] = rgb[3 * i + k] * color[k];
+    size_t bad = 0;
+    for (size_t i = 0; e->texels && i < 3 * count; i++) {
+        float value = rgb[i] * color[i % 3];
+        if (!(value >= 0 && value < RADIANCE_LIMIT)) value = 0, bad++;
+        e->texels[i / 3 * 4 + i % 3] = value;
+    }
+    if (bad)
+        report_warning(report, KILN_CODE_RANGE, &where, "clean the picture",
+                       "values of the environment are negative, not finite or beyond 1e30: they count as black");
     if (rgb != one) free(rgb);
     e->width = (int32_t)width;
     e->height = (int32_t)height;
