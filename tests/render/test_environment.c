@@ -49,6 +49,7 @@ static double texel_angle(int row, int width, int height) {
 static environment_value look(const environment *e, dvec3 d) {
     return environment_look_up(e, environment_place(v3((float)d.x, (float)d.y, (float)d.z)));
 }
+static double brightness(vec3 v) { return ((double)v.x + (double)v.y + (double)v.z) / 3; }
 /* scene.h: u = 0.5 + atan2(z, x)/2π, v = acos(y)/π from the top. */
 static dvec3 direction_of(double u, double v) {
     double phi = 2 * M_PI * (u - 0.5), theta = M_PI * v;
@@ -131,11 +132,30 @@ static void densities_integrate_to_one(void **state) {
         for (int i = 0; i < N; i++)
             for (int j = 0; j < 2 * N; j++) {
                 vec3 l = environment_look_up(e, (vec2){((float)j + 0.5f) / (2 * N), ((float)i + 0.5f) / N}).radiance;
-                power += (double)(l.x + l.y + l.z) / 3 * sin(M_PI * (i + 0.5) / N) * M_PI / N * M_PI / N;
+                power += brightness(l) * sin(M_PI * (i + 0.5) / N) * M_PI / N * M_PI / N;
             }
         if (fabs((double)e->total - power) > 0.02 * power) fail_msg("total %g, integral %g", (double)e->total, power);
         drop(&f);
     }
+}
+
+/* A texel's density is its mean brightness, as look-ups see it, over the whole. */
+static void densities_follow_brightness(void **state) {
+    (void)state;
+    fixture f = build(random_picture(), WIDTH, HEIGHT, 0);
+    const environment *e = &f.w.lights.environment;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        enum { N = 16 };
+        double mean = 0, density = (double)e->texels[4 * i + 3];
+        for (int n = 0; n < N * N; n++) {
+            vec2 place = {((float)(i % WIDTH) + ((float)(n % N) + 0.5f) / N) / WIDTH,
+                          ((float)(i / WIDTH) + ((float)(n / N) + 0.5f) / N) / HEIGHT};
+            mean += brightness(environment_look_up(e, place).radiance) / (N * N);
+        }
+        if (fabs(density * (double)e->total - mean) > 0.01 * mean + 1e-4)
+            fail_msg("texel %d: density %g, brightness %g of %g", i, density, mean, (double)e->total);
+    }
+    drop(&f);
 }
 
 /* Texels are drawn as often as their densities say, and what is picked is what a look-up finds there, but for directions
@@ -241,6 +261,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(texels_lie_where_the_formula_says), cmocka_unit_test(look_ups_are_bilinear_and_wrap),
         cmocka_unit_test(rotation_turns_the_surroundings),   cmocka_unit_test(densities_integrate_to_one),
+        cmocka_unit_test(densities_follow_brightness),
         cmocka_unit_test(picks_agree_with_look_ups),         cmocka_unit_test(irradiance_agrees),
         cmocka_unit_test(a_constant_is_uniform),             cmocka_unit_test(bad_texels_are_black),
     };
