@@ -72,7 +72,8 @@ static void print(kiln_text *text) {
 
 void cli_print_help(const cli_command *c) {
     kiln_text out = {0};
-    text_format(&out, "kiln %s%s%s [options]: %s\n", c->name, c->argument ? " " : "", c->argument ? c->argument : "", c->summary);
+    text_format(&out, "kiln %s%s%s [options]: %s\n", c->name, c->argument ? " " : "", c->argument ? c->argument : "",
+                c->summary);
     append_options(&out, c);
     if (c->examples) text_format(&out, "\nExamples\n%s\n", c->examples);
     print(&out);
@@ -115,7 +116,11 @@ static int run_version(const cli_command *command, cli_args *args, kiln_report *
 
 static const char *const no_groups[] = {NULL};
 
-const cli_command cli_help = {.name = "help", .argument = "COMMAND", .summary = "this text, or the options of a command",
-                              .groups = no_groups, .talk = " help ", .run = run_help};
+const cli_command cli_help = {.name = "help",
+                              .argument = "COMMAND",
+                              .summary = "this text, or the options of a command",
+                              .groups = no_groups,
+                              .talk = " help ",
+                              .run = run_help};
 const cli_command cli_version = {.name = "version", .summary = "the version of kiln", .groups = no_groups,
                                  .talk = " help ", .run = run_version};

@@ -17,7 +17,8 @@ static void print_names(kiln_text *out, const char *heading, const json_t *names
 static void print_color(kiln_text *out, const json_t *color) {
     const json_t *display;
     size_t i;
-    text_format(out, "\nColour\n  config       %s\n  default      %s\n", text_in(color, "config"), text_in(color, "default"));
+    text_format(out, "\nColour\n  config       %s\n  default      %s\n", text_in(color, "config"),
+                text_in(color, "default"));
     json_array_foreach(member(color, "displays"), i, display) {
         text_append(out, i ? "               " : "  displays     ");
         append_name(out, text_in(display, "name"), 0);
@@ -34,8 +35,9 @@ static void print_color(kiln_text *out, const json_t *color) {
 }
 
 static void print_machine(kiln_text *out, const json_t *m) {
-    text_format(out, "\nMachine\n  cpu          %s\n  features     %s\n  kernels      %s\n  threads      %.0f\n  memory       ",
-                text_in(m, "cpu"), text_in(m, "features"), text_in(m, "isa"), number_in(m, "threads"));
+    text_format(
+        out, "\nMachine\n  cpu          %s\n  features     %s\n  kernels      %s\n  threads      %.0f\n  memory       ",
+        text_in(m, "cpu"), text_in(m, "features"), text_in(m, "isa"), number_in(m, "threads"));
     append_bytes(out, number_in(m, "memory"));
     text_append(out, "\n");
 }

@@ -46,7 +46,8 @@ static void print_counts(const printer *p) {
     print_count(p, " of ", number_in(c, "meshes"), "mesh", "meshes");
     print_count(p, ", ", number_in(c, "triangles"), "triangle", "triangles");
     if (number_in(c, "triangles_unique") != number_in(c, "triangles_before_subdivision"))
-        print_count(p, " (", number_in(c, "triangles_before_subdivision"), "before subdivision)", "before subdivision)");
+        print_count(p, " (", number_in(c, "triangles_before_subdivision"), "before subdivision)",
+                    "before subdivision)");
     print_count(p, ", ", number_in(c, "materials"), "material", "materials");
     print_count(p, ", ", number_in(c, "images"), "image", "images");
     print_count(p, ", ", number_in(c, "lights"), "light", "lights");
@@ -112,7 +113,8 @@ static void print_mesh(const printer *p, const json_t *row) {
     json_array_foreach(member(row, "primvars"), i, name) text_format(p->out, " %s", json_string_value(name));
     if (!s) return;
     text_append(p->out, "; ");
-    if (is_true(s, "refined")) text_format(p->out, "refined, %s level %.0f: ", text_in(s, "scheme"), number_in(s, "level"));
+    if (is_true(s, "refined"))
+        text_format(p->out, "refined, %s level %.0f: ", text_in(s, "scheme"), number_in(s, "level"));
     else text_append(p->out, "not refined: ");
     append_name(p->out, text_in(s, "reason"), 0);
 }
@@ -120,7 +122,8 @@ static void print_mesh(const printer *p, const json_t *row) {
 static void print_texture(const printer *p, const json_t *t) {
     const json_t *image = json_array_get(member(p->root, "images"), (size_t)number_in(t, "image"));
     text_format(p->out, "\n           %-15s image %.0f", text_in(t, "slot"), number_in(t, "image"));
-    if (!is_null(image, "width")) text_format(p->out, ", %.0f x %.0f", number_in(image, "width"), number_in(image, "height"));
+    if (!is_null(image, "width"))
+        text_format(p->out, ", %.0f x %.0f", number_in(image, "width"), number_in(image, "height"));
     text_format(p->out, ", %s, uv %.0f", text_in(t, "transfer"), number_in(t, "uv_set"));
 }
 
@@ -131,8 +134,8 @@ static void print_material(const printer *p, const json_t *row) {
     json_array_foreach(member(row, "layers"), i, item) text_format(p->out, ", %s", json_string_value(item));
     text_append(p->out, "; color ");
     append_vector(p->out, member(row, "base_color"));
-    text_format(p->out, ", metallic %.3g, roughness %.3g, ior %.3g", number_in(row, "metallic"), number_in(row, "roughness"),
-                number_in(row, "ior"));
+    text_format(p->out, ", metallic %.3g, roughness %.3g, ior %.3g", number_in(row, "metallic"),
+                number_in(row, "roughness"), number_in(row, "ior"));
     double emission = 0;
     json_array_foreach(member(row, "emission"), i, item) emission = fmax(emission, json_number_value(item));
     if (emission > 0) {
@@ -156,7 +159,8 @@ static void print_light(const printer *p, const json_t *row) {
     text_format(p->out, "%s, %.4g %s, color ", text_in(row, "kind"), number_in(row, "intensity"), text_in(row, "unit"));
     append_vector(p->out, member(row, "color"));
     if (!is_null(row, "outer_cone_deg"))
-        text_format(p->out, ", cone %.3g to %.3g degrees", number_in(row, "inner_cone_deg"), number_in(row, "outer_cone_deg"));
+        text_format(p->out, ", cone %.3g to %.3g degrees", number_in(row, "inner_cone_deg"),
+                    number_in(row, "outer_cone_deg"));
 }
 
 static void print_camera(const printer *p, const json_t *row) {
@@ -171,7 +175,8 @@ static void print_camera(const printer *p, const json_t *row) {
 static void print_rendering(const printer *p) {
     const json_t *r = member(p->root, "rendering"), *m = member(p->root, "memory_estimate");
     static const char *const parts[] = {"textures", "geometry", "acceleration", "film"};
-    text_format(p->out, "\nRendering\n  picture      %.0f x %.0f\n  camera       ", number_in(r, "width"), number_in(r, "height"));
+    text_format(p->out, "\nRendering\n  picture      %.0f x %.0f\n  camera       ", number_in(r, "width"),
+                number_in(r, "height"));
     append_name(p->out, text_in(member(r, "camera"), "name"), 0);
     text_append(p->out, ", ");
     print_camera(p, member(r, "camera"));

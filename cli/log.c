@@ -60,10 +60,12 @@ static void append_harmless(kiln_text *out, const char *text) {
 
 static void print_message(const kiln_message *m) {
     static const char *const names[] = {[KILN_NOTE] = "note", [KILN_WARNING] = "warning", [KILN_ERROR] = "error"};
-    static const char *const colors[] = {[KILN_NOTE] = "\033[36m", [KILN_WARNING] = "\033[33m", [KILN_ERROR] = "\033[31m"};
+    static const char *const colors[] = {
+        [KILN_NOTE] = "\033[36m", [KILN_WARNING] = "\033[33m", [KILN_ERROR] = "\033[31m"};
     if (m->severity != KILN_ERROR && state.level < LOG_NORMAL) return;
     kiln_text line = {0};
-    text_format(&line, "%s%s:%s ", has_color() ? colors[m->severity] : "", names[m->severity], has_color() ? "\033[0m" : "");
+    text_format(&line, "%s%s:%s ", has_color() ? colors[m->severity] : "", names[m->severity],
+                has_color() ? "\033[0m" : "");
     append_harmless(&line, m->where);
     if (*m->where) text_append(&line, ": ");
     append_harmless(&line, m->what);
@@ -87,8 +89,11 @@ void log_flush(const kiln_report *report) {
 
 void log_warning_counts(const kiln_report *report) {
     uint64_t all = kiln_report_count(report, KILN_WARNING), kinds = 0;
-    for (size_t i = 0; i < kiln_report_size(report); i++) kinds += kiln_report_message(report, i).severity == KILN_WARNING;
-    if (all) log_line(LOG_NORMAL, "%llu warning%s%s", (unsigned long long)all, all == 1 ? "" : "s", all > kinds ? ", some more than once" : "");
+    for (size_t i = 0; i < kiln_report_size(report); i++)
+        kinds += kiln_report_message(report, i).severity == KILN_WARNING;
+    if (all)
+        log_line(LOG_NORMAL, "%llu warning%s%s", (unsigned long long)all, all == 1 ? "" : "s",
+                 all > kinds ? ", some more than once" : "");
 }
 
 /* "1:05", "2:03:04" */

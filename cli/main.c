@@ -51,7 +51,8 @@ int main(int argc, char **argv) {
     int code = EXIT_USAGE;
     if (command) code = run(command, argc - 2, argv + 2, report);
     else if (argc > 1) unknown(argv[1], report);
-    else report_error(report, KILN_CODE_USAGE, NULL, "try 'kiln render car.glb' or 'kiln help'", "no command was given");
+    else
+        report_error(report, KILN_CODE_USAGE, NULL, "try 'kiln render car.glb' or 'kiln help'", "no command was given");
     log_flush(report);
     kiln_report_destroy(report);
     return code;

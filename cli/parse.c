@@ -33,7 +33,8 @@ static const option_row *find(const parser *p, const char *name, size_t length, 
         const option_table *table = t ? &cli_talk_table : &job_option_table;
         for (size_t i = 0; i < table->count; i++) {
             const option_row *row = &table->rows[i];
-            bool same = letter ? row->letter == letter : strlen(row->name) == length && strncmp(row->name, name, length) == 0;
+            bool same =
+                letter ? row->letter == letter : strlen(row->name) == length && strncmp(row->name, name, length) == 0;
             *talk = t == 1;
             if (same && (t ? cli_takes_talk(p->command, row) : cli_takes_job(p->command, row))) return row;
         }
@@ -56,7 +57,8 @@ static bool unknown(const parser *p, const char *argument, size_t length) {
     nearest = text_nearest(bare, names, count);
     if (nearest) text_format(&remedy, "did you mean --%s?", nearest);
     else text_format(&remedy, "'kiln %s --help' lists the options", p->command->name);
-    report_error(p->report, KILN_CODE_USAGE, NULL, remedy.data, "unknown option '%s'", word.data ? word.data : argument);
+    report_error(p->report, KILN_CODE_USAGE, NULL, remedy.data, "unknown option '%s'",
+                 word.data ? word.data : argument);
     text_free(&word);
     text_free(&remedy);
     return false;
@@ -110,10 +112,12 @@ static bool parse_short(parser *p, const char *argument) {
 
 static bool parse_positional(parser *p, const char *argument) {
     if (!p->command->argument)
-        return report_error(p->report, KILN_CODE_USAGE, NULL, NULL, "kiln %s takes no argument '%s'", p->command->name, argument);
+        return report_error(p->report, KILN_CODE_USAGE, NULL, NULL, "kiln %s takes no argument '%s'", p->command->name,
+                            argument);
     if (p->args->scene)
-        return report_error(p->report, KILN_CODE_USAGE, NULL, "call it once for each", "'%s' and '%s': kiln %s takes one %s",
-                            p->args->scene, argument, p->command->name, p->command->argument);
+        return report_error(p->report, KILN_CODE_USAGE, NULL, "call it once for each",
+                            "'%s' and '%s': kiln %s takes one %s", p->args->scene, argument, p->command->name,
+                            p->command->argument);
     p->args->scene = argument;
     return true;
 }
@@ -126,13 +130,15 @@ static bool take_environment(parser *p) {
     if (!threads || !*threads || !cli_takes_job(p->command, row)) return true;
     kiln_where where = where_root("KILN_THREADS");
     if (!text_to_uint64(threads, &number) || (double)number < row->low || (double)number > row->high)
-        return report_error(p->report, KILN_CODE_USAGE, &where, "unset it, or correct it", "'%s' is not %s", threads, row->domain);
+        return report_error(p->report, KILN_CODE_USAGE, &where, "unset it, or correct it", "'%s' is not %s", threads,
+                            row->domain);
     return kiln_job_set(p->args->job, "threads", threads, p->report);
 }
 
 bool cli_parse(const cli_command *command, int count, char **arguments, cli_args *args, kiln_report *report) {
     kiln_arena arena = {0};
-    parser p = {.command = command, .args = args, .count = count, .arguments = arguments, .arena = &arena, .report = report};
+    parser p = {
+        .command = command, .args = args, .count = count, .arguments = arguments, .arena = &arena, .report = report};
     bool done = option_defaults(&cli_talk_table, &args->talk, &arena) && take_environment(&p), options = true;
     while (done && p.next < count) {
         const char *argument = arguments[p.next++];

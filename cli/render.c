@@ -50,8 +50,8 @@ static void log_outputs(const json_t *stats) {
         if (!json_is_true(json_object_get(o, "written"))) continue;
         const char *format = text_in(o, "format"), *file = text_in(o, "file");
         bool linear = strcmp(format, "OpenEXR") == 0 || strcmp(format, "Radiance HDR") == 0;
-        log_line(LOG_NORMAL, "wrote %s (%ld x %ld, %s)", strcmp(file, "-") == 0 ? "a PNG to stdout" : file, side[0], side[1],
-                 linear ? "scene-linear" : text_in(picture, "color_view"));
+        log_line(LOG_NORMAL, "wrote %s (%ld x %ld, %s)", strcmp(file, "-") == 0 ? "a PNG to stdout" : file, side[0],
+                 side[1], linear ? "scene-linear" : text_in(picture, "color_view"));
     }
 }
 

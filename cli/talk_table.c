@@ -11,7 +11,8 @@ static const char talk[] = "Talk";
 static const option_row rows[] = {
     {"json", 0, NULL, talk, "data as JSON on stdout", NULL, NULL, "true or false", &option_toggle, FIELD(json)},
     {"quiet", 'q', NULL, talk, "errors only", NULL, NULL, "true or false", &option_toggle, FIELD(quiet)},
-    {"verbose", 'v', NULL, talk, "every step and its time", NULL, NULL, "true or false", &option_toggle, FIELD(verbose)},
+    {"verbose", 'v', NULL, talk, "every step and its time", NULL, NULL, "true or false", &option_toggle,
+     FIELD(verbose)},
     {"progress", 0, "auto|always|never", talk, "auto: on a terminal", "auto", NULL, "a mode", &option_choices, modes,
      FIELD(progress)},
     {"help", 'h', NULL, talk, "this text", NULL, NULL, "true or false", &option_toggle, FIELD(help)},

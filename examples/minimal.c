@@ -17,8 +17,8 @@ static bool draw(const char *asset, const char *picture, kiln_report *report) {
     if (done) {
         kiln_framing framing = {.azimuth_rad = 0.5, .elevation_rad = 0.25};
         camera = kiln_camera_frame(scene, &framing);
-        done = kiln_subdivide(scene, &(kiln_subdivide_options){.camera = &camera, .width = SIDE, .height = SIDE}, NULL, NULL,
-                              report) &&
+        done = kiln_subdivide(scene, &(kiln_subdivide_options){.camera = &camera, .width = SIDE, .height = SIDE}, NULL,
+                              NULL, report) &&
                kiln_scene_set_studio(scene, framing.azimuth_rad, 1, report) && kiln_scene_commit(scene, report) &&
                kiln_renderer_create(scene, NULL, &renderer, report) &&
                kiln_film_create(&(kiln_film_desc){.width = SIDE, .height = SIDE}, &film, report) &&

@@ -3,9 +3,10 @@
 
 #include <stdio.h>
 
-static bool add_part(kiln_scene *scene, const float *positions, uint32_t vertices, const uint32_t *corners, uint32_t faces,
-                     const kiln_material *material, kiln_report *report) {
-    kiln_mesh_desc mesh = {.vertex_count = vertices, .positions = positions, .face_count = faces, .face_vertices = corners};
+static bool add_part(kiln_scene *scene, const float *positions, uint32_t vertices, const uint32_t *corners,
+                     uint32_t faces, const kiln_material *material, kiln_report *report) {
+    kiln_mesh_desc mesh = {
+        .vertex_count = vertices, .positions = positions, .face_count = faces, .face_vertices = corners};
     kiln_instance_desc instance = {.name = material->name};
     return kiln_scene_add_material(scene, material, &mesh.material, report) &&
            kiln_scene_add_mesh(scene, &mesh, &instance.mesh, report) &&

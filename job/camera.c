@@ -19,7 +19,8 @@ double camera_lens_radius(double f_stop, double yfov_rad) {
 
 double camera_azimuth(const kiln_camera *c) {
     const double *back = c->transform + 8, *up = c->transform + 4;
-    bool vertical = fabs(back[0]) + fabs(back[2]) < 1e-6 * fabs(back[1]); /* looking down, what is below in the picture */
+    bool vertical = fabs(back[0]) + fabs(back[2]) < 1e-6 * fabs(back[1]);
+    /* From above, where the lower edge of the picture is. */
     return vertical ? atan2(-up[0], -up[2]) : atan2(back[0], back[2]);
 }
 
@@ -65,14 +66,18 @@ static bool refuse(const char *flag, const char *why, const char *remedy, kiln_r
 
 static bool change_lens(const job_options *o, kiln_camera *c, kiln_report *report) {
     bool flat = c->projection == KILN_ORTHOGRAPHIC;
-    if (flat && job_given(o, fov_deg)) return refuse("--fov", "the camera is orthographic: it has no angle of view", "choose another camera", report);
+    if (flat && job_given(o, fov_deg))
+        return refuse("--fov", "the camera is orthographic: it has no angle of view", "choose another camera", report);
     if (flat && o->aperture > 0)
-        return refuse("--aperture", "the camera is orthographic: it has no focal length", "choose another camera", report);
+        return refuse("--aperture", "the camera is orthographic: it has no focal length", "choose another camera",
+                      report);
     if (job_given(o, fov_deg)) c->yfov_rad = o->fov_deg * degree;
     if (job_given(o, aperture)) c->lens_radius = camera_lens_radius(o->aperture, c->yfov_rad);
     if (job_given(o, focus)) c->focus_distance = o->focus;
     if (job_given(o, blades)) c->blades = o->blades;
-    if (o->blades == 1 || o->blades == 2) return refuse("--blades", "one or two blades enclose nothing", "give 3 or more, or 0 for a round aperture", report);
+    if (o->blades == 1 || o->blades == 2)
+        return refuse("--blades", "one or two blades enclose nothing", "give 3 or more, or 0 for a round aperture",
+                      report);
     return true;
 }
 
@@ -98,7 +103,8 @@ bool view_choose(const job_options *o, const kiln_scene *scene, job_view *v, kil
     const kiln_camera *from;
     if (!find_camera(o, scene, &from, report)) return false;
     if (from && (job_given(o, orbit) || job_given(o, frame_fit)))
-        return refuse(job_given(o, orbit) ? "--orbit" : "--frame-fit", "it belongs to the camera auto", "leave out --camera, or give --camera auto", report);
+        return refuse(job_given(o, orbit) ? "--orbit" : "--frame-fit", "it belongs to the camera auto",
+                      "leave out --camera, or give --camera auto", report);
     v->automatic = !from;
     choose_size(o, from, v);
     v->camera = from ? *from : frame(o, scene, v);

@@ -4,7 +4,7 @@
 
 #include "kiln/render.h"
 
-/* From a quick render of the same view: options are those of the render to come; its stop rules, progress and cancel flag
+/* From a quick render of the same view: options are those of the render to come; its stop rules and its progress
  * are not used. width, height: of the picture. 0 when everything is black. */
 bool exposure_choose(const kiln_renderer *, const kiln_render_options *, uint32_t width, uint32_t height, double *stops,
                      kiln_report *);

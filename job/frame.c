@@ -44,7 +44,7 @@ static void extend_by_instance(reach *r, const kiln_scene *scene, const kiln_ins
 }
 
 /* The eye at (x, y, z) in the camera's axes sees p when |p.x − x| ≤ tx (z − p.z), and the same for y. So x + tx z must
- * reach the most that p.x + tx p.z does, and −x + tx z the most of −p.x + tx p.z: half way, the scene is in the middle. */
+ * reach the most that p.x + tx p.z does, and −x + tx z the most of −p.x + tx p.z; between both, all is centred. */
 static dvec3 place_eye(const reach *r, double tx, double ty) {
     const double *m = r->most;
     double z = fmax((m[RIGHT] + m[LEFT]) / (2 * tx), (m[UP] + m[DOWN]) / (2 * ty));
@@ -68,7 +68,8 @@ kiln_camera kiln_camera_frame(const kiln_scene *scene, const kiln_framing *f) {
     dvec3 eye = d3_add(d3_add(d3_scale(right, at.x), d3_scale(up, at.y)), d3_scale(back, at.z));
     kiln_camera camera = kiln_camera_default();
     camera.yfov_rad = yfov;
-    const mat4 frame = {{right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, eye.x, eye.y, eye.z, 1}};
+    const mat4 frame = {
+        {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, eye.x, eye.y, eye.z, 1}};
     memcpy(camera.transform, frame.m, sizeof frame.m);
     return camera;
 }

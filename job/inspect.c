@@ -156,7 +156,8 @@ static uint64_t geometry_bytes(const kiln_mesh *m) {
     for (uint32_t i = 0; i < m->primvar_count; i++)
         if (m->primvars[i].value_count > vertices) vertices = m->primvars[i].value_count;
     bool tangents = mesh_primvar(m, KILN_PRIMVAR_TANGENT, 0) != NULL;
-    return m->triangle_count * (uint64_t)TRIANGLE_BYTES + vertices * (uint64_t)(VERTEX_BYTES + (tangents ? TANGENT_BYTES : 0));
+    return m->triangle_count * (uint64_t)TRIANGLE_BYTES +
+           vertices * (uint64_t)(VERTEX_BYTES + (tangents ? TANGENT_BYTES : 0));
 }
 
 /* What a render with these options would hold. */

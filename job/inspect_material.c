@@ -78,7 +78,8 @@ static json_t *material(const kiln_material *m) {
     if (m->layers & KILN_LAYER_TRANSMISSION) put_number(o, "transmission", (double)m->transmission.value);
     if (m->layers & KILN_LAYER_VOLUME) {
         put_number(o, "thickness", (double)m->thickness.value);
-        put(o, "attenuation_distance", m->attenuation_distance > 0 ? json_number_of((double)m->attenuation_distance) : json_null());
+        put(o, "attenuation_distance",
+            m->attenuation_distance > 0 ? json_number_of((double)m->attenuation_distance) : json_null());
         put(o, "attenuation_color", json_floats_of(m->attenuation_color, 3));
     }
     put(o, "textures", textures(m));
@@ -87,13 +88,15 @@ static json_t *material(const kiln_material *m) {
 
 json_t *inspect_materials(const kiln_scene *scene) {
     json_t *array = json_array();
-    for (uint32_t i = 0; i < scene->material_count; i++) (void)json_array_append_new(array, material(&scene->materials[i]));
+    for (uint32_t i = 0; i < scene->material_count; i++)
+        (void)json_array_append_new(array, material(&scene->materials[i]));
     return array;
 }
 
 static const char *kind_name(kiln_image_kind kind) {
-    static const char *const names[] = {[KILN_IMAGE_UNKNOWN] = "pixels", [KILN_IMAGE_PNG] = "PNG", [KILN_IMAGE_JPEG] = "JPEG",
-                                        [KILN_IMAGE_WEBP] = "WebP", [KILN_IMAGE_TIFF] = "TIFF", [KILN_IMAGE_EXR] = "OpenEXR",
+    static const char *const names[] = {[KILN_IMAGE_UNKNOWN] = "pixels",   [KILN_IMAGE_PNG] = "PNG",
+                                        [KILN_IMAGE_JPEG] = "JPEG",        [KILN_IMAGE_WEBP] = "WebP",
+                                        [KILN_IMAGE_TIFF] = "TIFF",        [KILN_IMAGE_EXR] = "OpenEXR",
                                         [KILN_IMAGE_HDR] = "Radiance HDR", [KILN_IMAGE_KTX2] = "KTX2"};
     return names[kind];
 }

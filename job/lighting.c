@@ -76,7 +76,8 @@ static bool read_picture(const char *path, kiln_scene *scene, kiln_environment *
     }
     if (info.width != 2 * info.height)
         report_warning(report, KILN_CODE_IMAGE, &where, "give a latitude-longitude picture",
-                       "the environment has %u x %u pixels: twice as wide as high is expected", info.width, info.height);
+                       "the environment has %u x %u pixels: twice as wide as high is expected", info.width,
+                       info.height);
     environment->transfer = info.format == KILN_PIXELS_F32 ? KILN_TRANSFER_LINEAR : KILN_TRANSFER_SRGB;
     kiln_image_desc image = {.name = path, .encoded = bytes->data, .encoded_size = bytes->size,
                              .release = release_bytes, .release_user = bytes};

@@ -22,9 +22,10 @@ bool run_film(job_run *r) {
     uint64_t bytes = kiln_film_size(&r->film_desc) + pixels * OUTPUT_BYTES_PER_PIXEL, machine = machine_memory();
     if (o->crop[2] > r->view.width || o->crop[3] > r->view.height) {
         kiln_where where = where_root("--crop");
-        return report_error(r->report, KILN_CODE_USAGE, &where, "give X0,Y0,X1,Y1 in pixels, right and bottom exclusive",
-                            "%u,%u,%u,%u is not a part of %u x %u pixels", o->crop[0], o->crop[1], o->crop[2], o->crop[3],
-                            r->view.width, r->view.height);
+        return report_error(r->report, KILN_CODE_USAGE, &where,
+                            "give X0,Y0,X1,Y1 in pixels, right and bottom exclusive",
+                            "%u,%u,%u,%u is not a part of %u x %u pixels", o->crop[0], o->crop[1], o->crop[2],
+                            o->crop[3], r->view.width, r->view.height);
     }
     if (machine && bytes > machine / 4 * 3)
         return report_error(r->report, KILN_CODE_LIMIT, NULL, "render a smaller picture, or crops of it",
@@ -56,7 +57,8 @@ static kiln_render_options render_options(const job_run *r) {
                                  .filter = o->filter.kind,
                                  .filter_width = o->filter.width,
                                  /* A background colour is put behind the finished picture. */
-                                 .background = needs_alpha(r) ? KILN_BACKGROUND_TRANSPARENT : KILN_BACKGROUND_ENVIRONMENT,
+                                 .background =
+                                     needs_alpha(r) ? KILN_BACKGROUND_TRANSPARENT : KILN_BACKGROUND_ENVIRONMENT,
                                  .cancel = r->events->cancel,
                                  .progress = r->events->progress,
                                  .progress_user = r->events->user};
@@ -84,9 +86,11 @@ bool run_expose(job_run *r) {
 }
 
 static void warn_of_discarded(const job_run *r) {
-    static const char *const causes[KILN_DISCARD_COUNT] = {[KILN_DISCARD_RAY] = "a ray that was not one",
-                                                           [KILN_DISCARD_RADIANCE] = "a radiance that is not a number",
-                                                           [KILN_DISCARD_OVERFLOW] = "a radiance beyond what the film holds"};
+    static const char *const causes[KILN_DISCARD_COUNT] = {
+        [KILN_DISCARD_RAY] = "a ray that was not one",
+        [KILN_DISCARD_RADIANCE] = "a radiance that is not a number",
+        [KILN_DISCARD_OVERFLOW] = "a radiance beyond what the film holds",
+    };
     for (int d = 0; d < KILN_DISCARD_COUNT; d++) {
         kiln_where where = where_root(r->source);
         if (!r->stats.discarded[d]) continue;
@@ -121,7 +125,8 @@ static void background_to_working(const job_run *r, float out[3]) {
         linear[k] = v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
     }
     for (int k = 0; k < 3; k++)
-        out[k] = (float)((double)m[3 * k] * linear[0] + (double)m[3 * k + 1] * linear[1] + (double)m[3 * k + 2] * linear[2]);
+        out[k] =
+            (float)((double)m[3 * k] * linear[0] + (double)m[3 * k + 1] * linear[1] + (double)m[3 * k + 2] * linear[2]);
 }
 
 bool run_write(job_run *r) {
@@ -152,7 +157,8 @@ bool run_check_strict(job_run *r) {
     if (!r->options->strict || !warnings) return true;
     kiln_where where = where_root(r->source);
     return report_error(r->report, KILN_CODE_STRICT, &where, "mend what the warnings say, or leave out --strict",
-                        "%llu warning%s, and --strict was given", (unsigned long long)warnings, warnings == 1 ? "" : "s");
+                        "%llu warning%s, and --strict was given", (unsigned long long)warnings,
+                        warnings == 1 ? "" : "s");
 }
 
 bool run_missed_noise(const job_run *r) {

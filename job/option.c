@@ -188,7 +188,8 @@ void option_quote(const char *word, kiln_text *out) {
 static void print_argument(const option_row *row, const void *fields, uint32_t index, kiln_text *out) {
     kiln_text value = {0};
     option_print(row, fields, index, &value);
-    if (row->kind->is_switch) text_format(out, strcmp(value.data ? value.data : "", "true") == 0 ? " --%s" : " --%s=false", row->name);
+    if (row->kind->is_switch)
+        text_format(out, strcmp(value.data ? value.data : "", "true") == 0 ? " --%s" : " --%s=false", row->name);
     else {
         text_format(out, " --%s ", row->name);
         option_quote(value.data ? value.data : "", out);

@@ -103,8 +103,13 @@ static void print_duration(const option_row *row, const void *field, kiln_text *
     option_print_number(*(const double *)field, out);
 }
 
-static const struct { const char *name; kiln_pixel_filter kind; double width; } filters[] = {
-    {"box", KILN_PIXEL_BOX, 1}, {"gaussian", KILN_PIXEL_GAUSSIAN, 3}, {"blackman-harris", KILN_PIXEL_BLACKMAN_HARRIS, 1.5}};
+static const struct {
+    const char *name;
+    kiln_pixel_filter kind;
+    double width;
+} filters[] = {{"box", KILN_PIXEL_BOX, 1},
+               {"gaussian", KILN_PIXEL_GAUSSIAN, 3},
+               {"blackman-harris", KILN_PIXEL_BLACKMAN_HARRIS, 1.5}};
 
 static bool parse_filter(const option_row *row, const char *text, void *field, kiln_arena *arena) {
     (void)row, (void)arena;
@@ -140,7 +145,8 @@ static bool parse_roulette(const option_row *row, const char *text, void *field,
     if (!take(&text, ':', name)) return false;
     if (strcmp(name, "auto") == 0 && !more) r.kind = KILN_ROULETTE_AUTO;
     else if (strcmp(name, "off") == 0 && !more) r.kind = KILN_ROULETTE_OFF;
-    else if (strcmp(name, "fixed") == 0 && text_to_double(text, &r.p) && r.p > 0 && r.p <= 1) r.kind = KILN_ROULETTE_FIXED;
+    else if (strcmp(name, "fixed") == 0 && text_to_double(text, &r.p) && r.p > 0 && r.p <= 1)
+        r.kind = KILN_ROULETTE_FIXED;
     else if (strcmp(name, "throughput") == 0) {
         r.kind = KILN_ROULETTE_THROUGHPUT;
         r.min_depth = ROULETTE_MIN;
@@ -168,7 +174,8 @@ static bool parse_orbit(const option_row *row, const char *text, void *field, ki
     (void)row, (void)arena;
     char azimuth[64];
     job_orbit o;
-    if (!take(&text, ',', azimuth) || !text_to_double(azimuth, &o.azimuth_deg) || !text_to_double(text, &o.elevation_deg))
+    if (!take(&text, ',', azimuth) || !text_to_double(azimuth, &o.azimuth_deg) ||
+        !text_to_double(text, &o.elevation_deg))
         return false;
     if (!(fabs(o.azimuth_deg) <= 1e6 && fabs(o.elevation_deg) <= 90)) return false;
     *(job_orbit *)field = o;

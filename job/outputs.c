@@ -50,7 +50,8 @@ static bool check(const job_options *o, const output_plan *plan, const char *pat
         return report_error(report, KILN_CODE_USAGE, &where, "send it to a file or a pipe",
                             "a picture would go to the terminal");
     if (o->background.kind == KILN_BACKGROUND_TRANSPARENT && !row->transparent)
-        return report_error(report, KILN_CODE_USAGE, &where, "write .png, .webp, .tif or .exr, or give --background a colour",
+        return report_error(report, KILN_CODE_USAGE, &where,
+                            "write .png, .webp, .tif or .exr, or give --background a colour",
                             "%s cannot be transparent", row->format);
     for (uint32_t i = 0; i < plan->count; i++)
         if (strcmp(plan->items[i].path, path) == 0)

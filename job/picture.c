@@ -34,11 +34,13 @@ static void develop_row(void *context, size_t row, uint32_t thread) {
     float *pixels = d->pixels + row * d->width * d->channels;
     const float *alpha = d->alpha ? d->alpha + row * d->width : NULL;
     for (size_t i = 0; alpha && i < d->width; i++)
-        for (size_t k = 0; k < 3; k++) pixels[i * d->channels + k] = alpha[i] > 0 ? pixels[i * d->channels + k] / alpha[i] : 0;
+        for (size_t k = 0; k < 3; k++)
+            pixels[i * d->channels + k] = alpha[i] > 0 ? pixels[i * d->channels + k] / alpha[i] : 0;
     kiln_view_apply(p->view, pixels, d->width, d->channels);
     for (size_t i = 0; p->background && i < d->width; i++)
         for (size_t k = 0; k < 3; k++)
-            pixels[i * d->channels + k] = alpha[i] * pixels[i * d->channels + k] + (1 - alpha[i]) * (float)p->background[k] / 255;
+            pixels[i * d->channels + k] =
+                alpha[i] * pixels[i * d->channels + k] + (1 - alpha[i]) * (float)p->background[k] / 255;
 }
 
 /* From three channels to four in place, last pixel first. */
@@ -72,7 +74,8 @@ bool picture_display(const picture *p, kiln_image *image, kiln_report *report) {
 
 static bool write_display(const picture *p, const char *path, kiln_report *report) {
     kiln_image image;
-    kiln_image_write_options options = {.srgb = kiln_view_is_srgb(p->view), .text = p->text, .text_count = p->text_count};
+    kiln_image_write_options options = {
+        .srgb = kiln_view_is_srgb(p->view), .text = p->text, .text_count = p->text_count};
     kiln_view_cicp(p->view, &options.cicp_primaries, &options.cicp_transfer);
     if (!picture_display(p, &image, report)) return false;
     bool done = image_write_display(path, &image, &options, report);

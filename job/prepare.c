@@ -99,7 +99,7 @@ bool run_light(job_run *r) {
         return false;
     kiln_scene_counts c = kiln_scene_count(r->scene);
     run_log(r, "%s: %u instance%s of %u mesh%s, %llu triangles; camera %s, light %s", path_base(r->source), c.instances,
-            c.instances == 1 ? "" : "s", c.meshes, c.meshes == 1 ? "" : "es", (unsigned long long)c.triangles, r->view.name,
-            lighting_describe(&r->lighting, r->options));
+            c.instances == 1 ? "" : "s", c.meshes, c.meshes == 1 ? "" : "es", (unsigned long long)c.triangles,
+            r->view.name, lighting_describe(&r->lighting, r->options));
     return true;
 }

@@ -45,7 +45,8 @@ static double room(dvec3 d) {
 /* 1 within the box, 0 outside, over `edge` in between. */
 static double cover(const box *b, dvec3 d) {
     double az = b->azimuth * M_PI / 180, el = b->elevation * M_PI / 180;
-    dvec3 at = {sin(az) * cos(el), sin(el), cos(az) * cos(el)}, right = {cos(az), 0, -sin(az)}, up = d3_cross(at, right);
+    dvec3 at = {sin(az) * cos(el), sin(el), cos(az) * cos(el)}, right = {cos(az), 0, -sin(az)},
+          up = d3_cross(at, right);
     double along = d3_dot(d, at);
     if (!(along > 0)) return 0;
     double x = fabs(d3_dot(d, right) / along) - b->half_width, y = fabs(d3_dot(d, up) / along) - b->half_height;

@@ -21,7 +21,9 @@ static void append_frame(int64_t frame, size_t digits, kiln_text *out) {
 
 /* The inside of {…}. */
 static bool append_field(const char *field, const template_values *v, kiln_text *out) {
-    const struct { const char *name, *value; } rows[] = {{"name", v->name}, {"camera", v->camera}, {"variant", v->variant}};
+    const struct {
+        const char *name, *value;
+    } rows[] = {{"name", v->name}, {"camera", v->camera}, {"variant", v->variant}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (strcmp(field, rows[i].name) == 0) {
             append_part(rows[i].value, out);

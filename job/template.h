@@ -14,7 +14,8 @@ typedef struct template_values {
 
 /* "{{" and "}}" stand for braces. What is filled in cannot leave the folder: its slashes and control characters become
  * '_'. False: reported; `where` names the option. */
-bool template_expand(const char *pattern, const template_values *, kiln_text *out, const kiln_where *where, kiln_report *);
+bool template_expand(const char *pattern, const template_values *, kiln_text *out, const kiln_where *where,
+                     kiln_report *);
 
 /* "dir/car.final.glb" gives "car.final"; "-" gives "stdin"; free(). */
 char *template_asset_name(const char *path);

@@ -15,7 +15,8 @@ kiln_backend kiln_render_backend(void) {
 }
 
 static size_t image_bytes_of(const world_image *i) {
-    static const size_t bytes[] = {[KILN_PIXELS_U8] = 1, [KILN_PIXELS_U16] = sizeof(float), [KILN_PIXELS_F32] = sizeof(float)};
+    static const size_t bytes[] = {
+        [KILN_PIXELS_U8] = 1, [KILN_PIXELS_U16] = sizeof(float), [KILN_PIXELS_F32] = sizeof(float)};
     size_t values = 4 * (size_t)i->width * i->height;
     return (i->codes ? values * bytes[i->format] : 0) + (i->srgb ? values * sizeof(float) : 0);
 }

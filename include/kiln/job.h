@@ -18,7 +18,7 @@ typedef struct kiln_job kiln_job;
 
 /* What a job says while it works; every function may be NULL. All calls come from the thread that runs the job. */
 typedef struct kiln_job_events {
-    void (*phase)(const char *name, void *user); /* "color", "import", "subdivide", "build", "render", "write", … begins */
+    void (*phase)(const char *name, void *user); /* "import", "build", "render", "write", … begins */
     void (*log)(const char *line, void *user); /* what was found and decided, for people */
     void (*progress)(const kiln_progress *, void *user);
     const volatile int *cancel; /* not 0: stop soon; what was reached is written. NULL: never */
@@ -65,10 +65,11 @@ KILN_API char *kiln_job_info(kiln_job *, kiln_report *);
 
 /* The steps that a program may want without the rest. */
 
-/* Writes a film: .exr and .hdr hold the working space, .png, .jpg, .webp and .tif what view makes of it; "-" is a PNG on
- * standard output. With the AOV alpha a file has transparency: straight in PNG, WebP and TIFF, premultiplied in EXR. The
- * other AOVs become layers of an EXR file. */
-KILN_API bool kiln_film_write(const kiln_film *, const kiln_color *, const kiln_view *, const char *path, kiln_report *);
+/* Writes a film: .exr and .hdr hold the working space, .png, .jpg, .webp and .tif what view makes of it; "-" is a PNG
+ * on standard output. With the AOV alpha a file has transparency: straight in PNG, WebP and TIFF, premultiplied in EXR.
+ * The other AOVs become layers of an EXR file. */
+KILN_API bool kiln_film_write(const kiln_film *, const kiln_color *, const kiln_view *, const char *path,
+                              kiln_report *);
 
 typedef struct kiln_framing {
     double azimuth_rad, elevation_rad; /* of the eye, around the scene: 0 looks at its front, from +Z */

@@ -143,8 +143,8 @@ void assert_refused_list(const place *p, int code, const char *text, const char 
     size_t before = files_in(p);
     result r = run_list(p, arguments);
     const char *end = strchr(r.err, '\n');
-    bool fine = r.code == code && strncmp(r.err, "error: ", 7) == 0 && end && !end[1] && strstr(r.err, text) && !r.out_size &&
-                files_in(p) == before;
+    bool fine = r.code == code && strncmp(r.err, "error: ", 7) == 0 && end && !end[1] && strstr(r.err, text) &&
+                !r.out_size && files_in(p) == before;
     if (!fine) {
         print_run(&r, arguments);
         fail_msg("expected exit code %d, one line with '%s', and nothing else", code, text);

@@ -37,9 +37,11 @@ result run_wait(const place *, pid_t);
 /* Waits until standard error holds the text; false after half a minute. */
 bool run_says(const place *, const char *text);
 
-/* Runs, and holds exit code and one line on standard error that has the text; no line on standard output, no new file. */
+/* Runs, and holds exit code and one line on standard error that has the text; no line on standard output, no new file.
+ */
 void assert_refused_list(const place *, int code, const char *text, const char *const *arguments);
-#define assert_refused(place_, code, text, ...) assert_refused_list(place_, code, text, (const char *const[]){__VA_ARGS__, NULL})
+#define assert_refused(place_, code, text, ...)                                                                        \
+    assert_refused_list(place_, code, text, (const char *const[]){__VA_ARGS__, NULL})
 /* Runs, and holds exit code 0. */
 void assert_runs_list(const place *, const char *const *arguments);
 #define assert_runs(place_, ...) assert_runs_list(place_, (const char *const[]){__VA_ARGS__, NULL})

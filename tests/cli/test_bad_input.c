@@ -16,17 +16,19 @@ static const char grey[] = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAA
                   uri[] = "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA",
                   nan_uri[] = "data:application/octet-stream;base64,AADAfwAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA";
 
-static void write_gltf(const place *p, const char *the_nodes, const char *the_attributes, const char *the_uri, const char *image) {
+static void write_gltf(const place *p, const char *the_nodes, const char *the_attributes, const char *the_uri,
+                       const char *image) {
     char json[4096];
-    int size = snprintf(json, sizeof json,
-                        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":%s,"
-                        "\"meshes\":[{\"primitives\":[{\"attributes\":%s,\"material\":0}]}],"
-                        "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],"
-                        "\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"%s\"}],"
-                        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
-                        "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}],"
-                        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":\"%s\"}]}",
-                        the_nodes, the_attributes, image, the_uri);
+    int size =
+        snprintf(json, sizeof json,
+                 "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":%s,"
+                 "\"meshes\":[{\"primitives\":[{\"attributes\":%s,\"material\":0}]}],"
+                 "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}}],"
+                 "\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"%s\"}],"
+                 "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+                 "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}],"
+                 "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":36,\"uri\":\"%s\"}]}",
+                 the_nodes, the_attributes, image, the_uri);
     assert_true(size > 0 && (size_t)size < sizeof json);
     write_file(p, "a.gltf", json, (size_t)size);
 }
@@ -108,7 +110,8 @@ static void outputs_that_cannot_be_written(void **state) {
     assert_refused(p, 1, "file/a.png", "render", PAIR("unlit_a"), "-o", "a.png", "-o", "file/a.png");
     assert_refused(p, 1, "nowhere/s.json", "render", PAIR("unlit_a"), "--stats", "nowhere/s.json");
     assert_refused(p, 2, "no format that kiln writes", "render", PAIR("unlit_a"), "-o", "a.bmp");
-    assert_refused(p, 2, "JPEG cannot be transparent", "render", PAIR("unlit_a"), "-o", "a.jpg", "--background", "transparent");
+    assert_refused(p, 2, "JPEG cannot be transparent", "render", PAIR("unlit_a"), "-o", "a.jpg", "--background",
+                   "transparent");
     assert_refused(p, 2, "cannot be filled in", "render", PAIR("unlit_a"), "-o", "{nonsense}.png");
 }
 

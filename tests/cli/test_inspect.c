@@ -19,8 +19,9 @@ static void assets_are_shown(void **state) {
     result r = run(p, "inspect", PAIR("light_spot_b"));
     assert_int_equal(r.code, 0);
     assert_int_equal(r.err_size, 0);
-    static const char *const parts[] = {"glTF 2.0", "KHR_lights_punctual", "triangles", "size ", "Instances", "Meshes",
-                                        "Materials", "Lights", "spot", " cd", "Cameras", "Rendering", "1024 x 1024", "memory "};
+    static const char *const parts[] = {"glTF 2.0", "KHR_lights_punctual", "triangles",   "size ",  "Instances",
+                                        "Meshes",   "Materials",           "Lights",      "spot",   " cd",
+                                        "Cameras",  "Rendering",           "1024 x 1024", "memory "};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) assert_has(r.out, parts[i]);
     assert_int_equal(files_in(p), 0);
     result_free(&r);
@@ -61,8 +62,9 @@ static void warnings_are_on_standard_error_and_strict_counts_them(void **state) 
 static void the_machine_is_shown(void **state) {
     result r = run(*state, "info");
     assert_int_equal(r.code, 0);
-    static const char *const parts[] = {"Embree", "OpenColorIO", "OpenSubdiv", "threads", "kernels", "embedded kiln config",
-                                        "Khronos PBR Neutral", "ACES", ".glb", ".exr"};
+    static const char *const parts[] = {
+        "Embree", "OpenColorIO", "OpenSubdiv", "threads", "kernels", "embedded kiln config", "Khronos PBR Neutral",
+        "ACES",   ".glb",        ".exr"};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) assert_has(r.out, parts[i]);
     result_free(&r);
     r = run(*state, "info", "--json");
@@ -74,8 +76,8 @@ static void the_machine_is_shown(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {CLI_TEST(assets_are_shown), CLI_TEST(textures_are_shown_with_their_transfer),
-                                       CLI_TEST(json_has_the_same), CLI_TEST(warnings_are_on_standard_error_and_strict_counts_them),
-                                       CLI_TEST(the_machine_is_shown)};
+    const struct CMUnitTest tests[] = {
+        CLI_TEST(assets_are_shown), CLI_TEST(textures_are_shown_with_their_transfer), CLI_TEST(json_has_the_same),
+        CLI_TEST(warnings_are_on_standard_error_and_strict_counts_them), CLI_TEST(the_machine_is_shown)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -83,8 +83,8 @@ static void a_glb_comes_from_standard_input(void **state) {
 
 static void templates_are_filled_in(void **state) {
     const place *p = *state;
-    assert_runs(p, "render", PAIR("camera_yfov_a"), "--size", "8x8", "--spp", "1", "-o", "{name}.{camera}.{frame:4}.{variant}.png",
-                "-o", "x####.png", "--camera", "auto");
+    assert_runs(p, "render", PAIR("camera_yfov_a"), "--size", "8x8", "--spp", "1", "-o",
+                "{name}.{camera}.{frame:4}.{variant}.png", "-o", "x####.png", "--camera", "auto");
     assert_true(has_file(p, "camera_yfov_a.auto.0000.default.png"));
     assert_true(has_file(p, "x0000.png"));
 }
@@ -95,10 +95,12 @@ static void threads_and_runs_change_no_bit(void **state) {
     char name[16];
     for (int i = 0; i < 3; i++) {
         snprintf(name, sizeof name, "%s.png", counts[i]);
-        assert_runs(p, "render", PAIR("transmission_rough_a"), "--size", "48x40", "--spp", "9", "--threads", counts[i], "-o", name);
+        assert_runs(p, "render", PAIR("transmission_rough_a"), "--size", "48x40", "--spp", "9", "--threads", counts[i],
+                    "-o", name);
     }
     assert_true(same_bytes(p, "1.png", "2.png") && same_bytes(p, "1.png", "7.png"));
-    assert_runs(p, "render", PAIR("transmission_rough_a"), "--size", "48x40", "--spp", "9", "--seed", "1", "-o", "seed.png");
+    assert_runs(p, "render", PAIR("transmission_rough_a"), "--size", "48x40", "--spp", "9", "--seed", "1", "-o",
+                "seed.png");
     assert_false(same_bytes(p, "1.png", "seed.png"));
 }
 
@@ -131,13 +133,14 @@ static void holds_text(const place *p, const char *file, const char *text) {
 
 static void files_say_how_they_were_made(void **state) {
     const place *p = *state;
-    assert_runs(p, "render", SCENE, "--size", "8x8", "--spp", "3", "--seed", "11", "--exposure", "-1.5", "-o", "a.png", "-o",
-                "a.exr", "--aov", "albedo,normal,depth,samples,error,alpha");
+    assert_runs(p, "render", SCENE, "--size", "8x8", "--spp", "3", "--seed", "11", "--exposure", "-1.5", "-o", "a.png",
+                "-o", "a.exr", "--aov", "albedo,normal,depth,samples,error,alpha");
     const char *const png[] = {"Software", "kiln 0.", "display sRGB, view Khronos PBR Neutral, exposure -1.5",
                                "embedded kiln config, working space lin_rec709", "sRGB"};
-    const char *const exr[] = {"command", "--seed 11", "samplesPerPixel", "renderTime", "versions", "Embree ", "OpenColorIO ",
-                               "estimatedError", "colorConfig", "colorView", "exposure", "chromaticities", "albedo.R",
-                               "normal.X", "depth.Z", "samples.Y", "error.Y", "alpha.A"};
+    const char *const exr[] = {"command",   "--seed 11",      "samplesPerPixel", "renderTime",  "versions",
+                               "Embree ",   "OpenColorIO ",   "estimatedError",  "colorConfig", "colorView",
+                               "exposure",  "chromaticities", "albedo.R",        "normal.X",    "depth.Z",
+                               "samples.Y", "error.Y",        "alpha.A"};
     for (size_t i = 0; i < sizeof png / sizeof *png; i++) holds_text(p, "a.png", png[i]);
     for (size_t i = 0; i < sizeof exr / sizeof *exr; i++) holds_text(p, "a.exr", exr[i]);
 }
@@ -146,13 +149,15 @@ static void files_say_how_they_were_made(void **state) {
 static void pngs_are_reproducible(void **state) {
     const place *p = *state;
     assert_runs(p, "render", SCENE, "--size", "8x8", "--spp", "2", "-o", "a.png");
-    assert_runs(p, "LC_ALL=de_DE.UTF-8", "render", SCENE, "--size", "8x8", "--spp", "2", "-o", "b.png", "--stats", "s.json");
+    assert_runs(p, "LC_ALL=de_DE.UTF-8", "render", SCENE, "--size", "8x8", "--spp", "2", "-o", "b.png", "--stats",
+                "s.json");
     assert_true(same_bytes(p, "a.png", "b.png"));
 }
 
 static void numbers_do_not_depend_on_the_locale(void **state) {
     const place *p = *state;
-    assert_runs(p, "LC_ALL=de_DE.UTF-8", "render", SCENE, "--size", "8x8", "--spp", "2", "--exposure", "0.5", "--stats", "s.json");
+    assert_runs(p, "LC_ALL=de_DE.UTF-8", "render", SCENE, "--size", "8x8", "--spp", "2", "--exposure", "0.5", "--stats",
+                "s.json");
     assert_refused(p, 2, "'0,5' is not", "LC_ALL=de_DE.UTF-8", "render", SCENE, "--exposure", "0,5");
     size_t size;
     char *text = (char *)read_file(p, "s.json", &size);
@@ -208,15 +213,16 @@ static void benchmarks_can_call_it(void **state) {
     static const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x80\x80\x81\x80\x80\x80\x81";
     write_file(p, "a.hdr", hdr, sizeof hdr - 1);
     assert_runs(p, "render", SCENE, "--size", "16x16", "--subdivide", "off", "--filter", "box:1", "--env", "a.hdr",
-                "--env-intensity", "0.5", "--aperture", "2.800000", "--focus", "3", "-o", "out.exr", "--spp", "4", "--noise", "0",
-                "--seed", "1000", "--max-depth", "9", "--threads", "2");
+                "--env-intensity", "0.5", "--aperture", "2.800000", "--focus", "3", "-o", "out.exr", "--spp", "4",
+                "--noise", "0", "--seed", "1000", "--max-depth", "9", "--threads", "2");
     assert_true(has_file(p, "out.exr"));
     assert_runs(p, "render", SCENE, "--size", "16x16", "--env", "none", "-o", "out.exr", "--spp", "1", "--noise", "0");
 }
 
 static void interrupt(const place *p, int signal) {
-    const char *const arguments[] = {"render", SCENE, "--size", "64x64", "--spp", "16000000", "--progress", "always", "-o", "a.png",
-                                     "-o", "a.exr", "--stats", "s.json", NULL};
+    const char *const arguments[] = {"render",   SCENE,        "--size",  "64x64",  "--spp",
+                                     "16000000", "--progress", "always",  "-o",     "a.png",
+                                     "-o",       "a.exr",      "--stats", "s.json", NULL};
     pid_t child = run_start(p, arguments);
     assert_true(run_says(p, " spp")); /* of a progress line: it renders */
     assert_int_equal(kill(child, signal), 0);
@@ -239,7 +245,8 @@ static void interrupted_renders_are_written(void **state) {
 /* What a caller has told to be ignored stays so: a job in the background goes on when the terminal's Ctrl-C comes. */
 static void ignored_interrupts_stay_ignored(void **state) {
     const place *p = *state;
-    const char *const arguments[] = {"render", SCENE, "--size", "32x32", "--budget", "700ms", "--progress", "always", NULL};
+    const char *const arguments[] = {"render", SCENE,        "--size", "32x32", "--budget",
+                                     "700ms",  "--progress", "always", NULL};
     signal(SIGINT, SIG_IGN);
     pid_t child = run_start(p, arguments);
     assert_true(run_says(p, " spp"));

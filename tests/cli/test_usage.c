@@ -38,10 +38,12 @@ static void wrong_usage_is_one_line_and_exit_code_2(void **state) {
 
 /* Options of the contract that do not exist yet are unknown like any other. */
 static void nothing_is_promised_that_is_not_there(void **state) {
-    const char *const names[] = {"--shutter", "--at", "--frames", "--fps", "--animation", "--variant", "--ground", "--caustics",
-                                 "--effects", "--checkpoint", "--resume", "--denoise", "--clamp-indirect", "--replay",
-                                 "--usd-python", "--sandbox", "--allow-outside"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) assert_refused(*state, 2, "unknown option", "render", SCENE, names[i], "1");
+    const char *const names[] = {"--shutter", "--at",           "--frames",         "--fps",     "--animation",
+                                 "--variant", "--ground",       "--caustics",       "--effects", "--checkpoint",
+                                 "--resume",  "--denoise",      "--clamp-indirect", "--replay",  "--usd-python",
+                                 "--sandbox", "--allow-outside"};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        assert_refused(*state, 2, "unknown option", "render", SCENE, names[i], "1");
 }
 
 /* Every spelling of an option means the same; a value may begin with a minus. */
@@ -53,7 +55,8 @@ static void options_have_several_spellings(void **state) {
 }
 
 static void the_command_line_goes_before_the_environment(void **state) {
-    assert_runs(*state, "KILN_THREADS=1", "render", SCENE, "--size", "8x8", "--spp", "1", "--threads", "2", "--stats", "s.json");
+    assert_runs(*state, "KILN_THREADS=1", "render", SCENE, "--size", "8x8", "--spp", "1", "--threads", "2", "--stats",
+                "s.json");
     size_t size;
     char *stats = (char *)read_file(*state, "s.json", &size);
     assert_non_null(strstr(stats, "\"threads\": 2"));
@@ -66,8 +69,16 @@ static void the_command_line_goes_before_the_environment(void **state) {
 
 static void help_is_on_standard_output(void **state) {
     const place *p = *state;
-    const char *const calls[][3] = {{"help"}, {"--help"}, {"-h"}, {"help", "render"}, {"render", "--help"}, {"render", "-h"},
-                                    {"inspect", "--help"}, {"info", "--help"}, {"help", "--help"}, {"version", "-h"}};
+    const char *const calls[][3] = {{"help"},
+                                    {"--help"},
+                                    {"-h"},
+                                    {"help", "render"},
+                                    {"render", "--help"},
+                                    {"render", "-h"},
+                                    {"inspect", "--help"},
+                                    {"info", "--help"},
+                                    {"help", "--help"},
+                                    {"version", "-h"}};
     for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
         result r = run_list(p, calls[i]);
         assert_int_equal(r.code, 0);

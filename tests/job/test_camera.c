@@ -123,7 +123,8 @@ static void azimuths_are_where_cameras_stand(void **state) {
     fixture *f = *state;
     for (int az = -170; az <= 180; az += 35)
         for (int el = -90; el <= 90; el += 45) {
-            kiln_camera c = kiln_camera_frame(f->scene, &(kiln_framing){.azimuth_rad = az * M_PI / 180, .elevation_rad = el * M_PI / 180});
+            kiln_camera c = kiln_camera_frame(
+                f->scene, &(kiln_framing){.azimuth_rad = az * M_PI / 180, .elevation_rad = el * M_PI / 180});
             double off = remainder(camera_azimuth(&c) - az * M_PI / 180, 2 * M_PI);
             if (el > -90) assert_true(fabs(off) < 1e-6);
         }

@@ -62,13 +62,15 @@ static void sunlight_in_lux_is_brought_down(void **state) {
     kiln_renderer *renderer;
     double stops;
     assert_done(f, kiln_renderer_create(f->scene, NULL, &renderer, f->report));
-    assert_done(f, exposure_choose(renderer, &(kiln_render_options){.camera = &above, .spp = 1, .noise = 1}, 4000, 2000, &stops, f->report));
+    assert_done(f, exposure_choose(renderer, &(kiln_render_options){.camera = &above, .spp = 1, .noise = 1}, 4000, 2000,
+                                   &stops, f->report));
     assert_near(stops, -13.1, 1e-9);
     kiln_renderer_destroy(renderer);
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_middle_becomes_grey), cmocka_unit_test(bright_parts_do_not_burn_out),
-                                       cmocka_unit_test(black_is_left_alone), JOB_TEST(sunlight_in_lux_is_brought_down)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_middle_becomes_grey), cmocka_unit_test(bright_parts_do_not_burn_out),
+        cmocka_unit_test(black_is_left_alone), JOB_TEST(sunlight_in_lux_is_brought_down)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -55,7 +55,8 @@ static void from_all_sides(const fixture *f, double tolerance) {
     for (int az = -180; az < 180; az += 50)
         for (int el = -90; el <= 90; el += 30)
             for (int i = 0; i < 3; i++) {
-                kiln_framing framing = {az * M_PI / 180, el * M_PI / 180, fovs[i], aspects[i], fits[(i + az + 200) % 4]};
+                kiln_framing framing = {az * M_PI / 180, el * M_PI / 180, fovs[i], aspects[i],
+                                        fits[(i + az + 200) % 4]};
                 assert_framed(f, &framing, tolerance);
             }
 }
@@ -116,17 +117,20 @@ static void all_instances_count(void **state) {
     add_box(f, (float[]){-1, -1, -1}, (float[]){1, 1, 1}, 0);
     mesh = f->scene->instances[0].mesh;
     for (int i = 0; i < 20; i++) {
-        const double q[4] = {0, sin(i * 0.3), 0, cos(i * 0.3)}, t[3] = {7 * sin(i), i - 10, 3 * cos(2 * i)}, s[3] = {1, 0.2 * i, 1};
+        const double q[4] = {0, sin(i * 0.3), 0, cos(i * 0.3)}, t[3] = {7 * sin(i), i - 10, 3 * cos(2 * i)},
+                     s[3] = {1, 0.2 * i, 1};
         mat4 m = mat4_trs(t, q, s);
-        assert_done(f, kiln_scene_add_instance(f->scene, &(kiln_instance_desc){.mesh = mesh, .time_count = 1, .transforms = m.m},
+        assert_done(f, kiln_scene_add_instance(f->scene,
+                                               &(kiln_instance_desc){.mesh = mesh, .time_count = 1, .transforms = m.m},
                                                NULL, f->report));
     }
     from_all_sides(f, 1e-9);
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {JOB_TEST(a_box_fills_its_share_from_all_sides), JOB_TEST(distant_small_and_large_scenes),
-                                       JOB_TEST(flat_things_are_framed_too), JOB_TEST(points_lines_and_nothing_leave_a_distance),
+    const struct CMUnitTest tests[] = {JOB_TEST(a_box_fills_its_share_from_all_sides),
+                                       JOB_TEST(distant_small_and_large_scenes), JOB_TEST(flat_things_are_framed_too),
+                                       JOB_TEST(points_lines_and_nothing_leave_a_distance),
                                        JOB_TEST(all_instances_count)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -64,9 +64,10 @@ static void a_file_becomes_pictures_and_statistics(void **state) {
     fixture *f = *state;
     char png[256], exr[256], stats[256];
     told t = {.log = {0}};
-    kiln_job *job = job_of(f, (const char *const[]){"size", "24x16", "spp", "4", "output", path_in(f, "{name}_{camera}.png", png), "output",
-                                                    path_in(f, "####.exr", exr), "stats", path_in(f, "s.json", stats), "aov",
-                                                    "albedo,samples", "threads", "2", NULL});
+    kiln_job *job =
+        job_of(f, (const char *const[]){"size", "24x16", "spp", "4", "output", path_in(f, "{name}_{camera}.png", png),
+                                        "output", path_in(f, "####.exr", exr), "stats", path_in(f, "s.json", stats),
+                                        "aov", "albedo,samples", "threads", "2", NULL});
     kiln_job_listen(job, &(kiln_job_events){.phase = on_phase, .log = on_log, .progress = on_progress, .user = &t});
     assert_done(f, kiln_job_render(job, PAIR("metallic_factor_a"), f->report));
     assert_string_equal(t.phases, "color import frame subdivide light build expose render write ");
@@ -79,12 +80,32 @@ static void a_file_becomes_pictures_and_statistics(void **state) {
     assert_true(r.outputs_written == 2 && r.stats.spp == 4 && !r.noise_missed && r.film);
     json_t *written = json_load_file(stats, 0, NULL);
     assert_non_null(written);
-    static const char *const paths[] = {"command", "options.size", "phases", "seconds", "scene.triangles", "scene.bounds.size",
-                                        "scene.light", "scene.camera.position", "picture.color_view", "render.ended_by",
-                                        "render.rays.camera", "render.rays.shadow", "render.samples", "render.error",
-                                        "render.discarded.invalid-ray.samples", "render.lost_energy", "outputs",
-                                        "memory.peak", "memory.film", "memory.acceleration", "machine.cpu", "machine.isa",
-                                        "versions.kiln", "versions.Embree", "versions.OpenColorIO", "warnings"};
+    static const char *const paths[] = {"command",
+                                        "options.size",
+                                        "phases",
+                                        "seconds",
+                                        "scene.triangles",
+                                        "scene.bounds.size",
+                                        "scene.light",
+                                        "scene.camera.position",
+                                        "picture.color_view",
+                                        "render.ended_by",
+                                        "render.rays.camera",
+                                        "render.rays.shadow",
+                                        "render.samples",
+                                        "render.error",
+                                        "render.discarded.invalid-ray.samples",
+                                        "render.lost_energy",
+                                        "outputs",
+                                        "memory.peak",
+                                        "memory.film",
+                                        "memory.acceleration",
+                                        "machine.cpu",
+                                        "machine.isa",
+                                        "versions.kiln",
+                                        "versions.Embree",
+                                        "versions.OpenColorIO",
+                                        "warnings"};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
         if (!find(written, paths[i])) fail_msg("%s is missing", paths[i]);
     assert_int_equal(json_integer_value(find(written, "render.samples")), 24 * 16 * 4);
@@ -101,7 +122,8 @@ static void one_failing_output_does_not_take_the_others_along(void **state) {
     if (access("/dev/full", W_OK) != 0) skip();
     path_in(f, "full.png", full);
     assert_int_equal(symlink("/dev/full", full), 0);
-    kiln_job *job = job_of(f, (const char *const[]){"size", "8x8", "spp", "1", "output", full, "output", path_in(f, "b.png", png), NULL});
+    kiln_job *job = job_of(
+        f, (const char *const[]){"size", "8x8", "spp", "1", "output", full, "output", path_in(f, "b.png", png), NULL});
     assert_false(kiln_job_render(job, PAIR("unlit_a"), f->report));
     assert_int_equal(kiln_report_exit_code(f->report), 1);
     assert_int_equal(kiln_job_last(job).outputs_written, 1);
@@ -126,7 +148,8 @@ static void cancelled_renders_are_written(void **state) {
     fixture *f = *state;
     char png[256];
     told t = {.cancel_after = 2};
-    kiln_job *job = job_of(f, (const char *const[]){"size", "64x64", "spp", "16777216", "output", path_in(f, "c.png", png), NULL});
+    kiln_job *job =
+        job_of(f, (const char *const[]){"size", "64x64", "spp", "16777216", "output", path_in(f, "c.png", png), NULL});
     kiln_job_listen(job, &(kiln_job_events){.progress = on_progress, .cancel = &t.cancel, .user = &t});
     assert_false(kiln_job_render(job, PAIR("unlit_a"), f->report));
     assert_int_equal(kiln_report_exit_code(f->report), 130);
@@ -153,7 +176,8 @@ static void strict_refuses_warnings_before_it_renders(void **state) {
     fixture *f = *state;
     char png[256];
     const char *lines = PAIR("mode_lines_b"); /* lines are left out, with a warning */
-    kiln_job *job = job_of(f, (const char *const[]){"size", "8x8", "spp", "1", "output", path_in(f, "c.png", png), NULL});
+    kiln_job *job =
+        job_of(f, (const char *const[]){"size", "8x8", "spp", "1", "output", path_in(f, "c.png", png), NULL});
     assert_done(f, kiln_job_render(job, lines, f->report));
     assert_true(kiln_report_count(f->report, KILN_WARNING) > 0);
     kiln_report_clear(f->report);
@@ -168,7 +192,8 @@ static void strict_refuses_warnings_before_it_renders(void **state) {
 static void missed_goals_are_told(void **state) {
     fixture *f = *state;
     char png[256];
-    kiln_job *job = job_of(f, (const char *const[]){"size", "16x16", "noise", "0.001%", "spp", "8", "output", path_in(f, "c.png", png), NULL});
+    kiln_job *job = job_of(f, (const char *const[]){"size", "16x16", "noise", "0.001%", "spp", "8", "output",
+                                                    path_in(f, "c.png", png), NULL});
     assert_done(f, kiln_job_render(job, PAIR("roughness_factor_a"), f->report));
     assert_true(kiln_job_last(job).noise_missed);
     kiln_job_destroy(job);
@@ -184,7 +209,8 @@ static void scenes_of_a_program_are_rendered(void **state) {
     char exr[256];
     add_box(f, (float[]){-1, -1, -1}, (float[]){1, 1, 1}, add_material(f, 0.5f, 0));
     assert_done(f, kiln_scene_set_environment(f->scene, &(kiln_environment){.color = {1, 1, 1}}, f->report));
-    kiln_job *job = job_of(f, (const char *const[]){"size", "16x16", "spp", "64", "subdivide", "off", "output", path_in(f, "b.exr", exr), NULL});
+    kiln_job *job = job_of(f, (const char *const[]){"size", "16x16", "spp", "64", "subdivide", "off", "output",
+                                                    path_in(f, "b.exr", exr), NULL});
     assert_done(f, kiln_job_render_scene(job, f->scene, "by hand", f->report));
     const kiln_film *film = kiln_job_last(job).film;
     float rgb[16 * 16 * 3];
@@ -203,16 +229,21 @@ static void assets_are_inspected(void **state) {
     char *text = kiln_job_inspect(job, PAIR("light_spot_b"), f->report);
     assert_non_null(text);
     json_t *json = json_loads(text, 0, NULL);
-    static const char *const paths[] = {"source.format", "source.extensions", "counts.triangles", "bounds.size", "instances",
-                                        "meshes", "materials", "images", "lights", "cameras", "rendering.light",
-                                        "memory_estimate.total", "warnings"};
+    static const char *const paths[] = {"source.format",    "source.extensions",
+                                        "counts.triangles", "bounds.size",
+                                        "instances",        "meshes",
+                                        "materials",        "images",
+                                        "lights",           "cameras",
+                                        "rendering.light",  "memory_estimate.total",
+                                        "warnings"};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
         if (!find(json, paths[i])) fail_msg("%s is missing", paths[i]);
     const json_t *lights = find(json, "lights"), *extensions = find(json, "source.extensions");
     bool spot = false, known = false;
     size_t i;
     const json_t *row;
-    json_array_foreach(lights, i, row) spot = spot || strcmp(json_string_value(json_object_get(row, "kind")), "spot") == 0;
+    json_array_foreach(lights, i, row) spot =
+        spot || strcmp(json_string_value(json_object_get(row, "kind")), "spot") == 0;
     json_array_foreach(extensions, i, row)
         known = known || (strcmp(json_string_value(json_object_get(row, "name")), "KHR_lights_punctual") == 0 &&
                           strcmp(json_string_value(json_object_get(row, "support")), "read") == 0);
@@ -234,7 +265,8 @@ static void the_machine_and_its_libraries_are_told(void **state) {
     json_t *version;
     size_t count = 0;
     json_object_foreach((json_t *)find(json, "versions"), key, version) {
-        if (strspn(json_string_value(version), "0123456789.") < 3) fail_msg("version of %s: %s", key, json_string_value(version));
+        if (strspn(json_string_value(version), "0123456789.") < 3)
+            fail_msg("version of %s: %s", key, json_string_value(version));
         count++;
     }
     assert_int_equal(count, 11);

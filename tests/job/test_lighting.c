@@ -78,7 +78,8 @@ static void the_studio_is_turned_and_dimmed(void **state) {
 
 static void surroundings_of_the_scene_are_turned_further(void **state) {
     fixture *f = *state;
-    assert_done(f, kiln_scene_set_environment(f->scene, &(kiln_environment){.color = {2, 4, 6}, .rotation_rad = 1}, f->report));
+    assert_done(
+        f, kiln_scene_set_environment(f->scene, &(kiln_environment){.color = {2, 4, 6}, .rotation_rad = 1}, f->report));
     give(f, "env-rotate", "-90");
     give(f, "env-intensity", "0.5");
     assert_done(f, apply(f));
@@ -118,11 +119,11 @@ static void what_is_no_picture_is_refused(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {JOB_TEST(scenes_without_light_get_the_studio), JOB_TEST(only_bright_emission_counts),
-                                       JOB_TEST(unlit_surfaces_light_nothing), JOB_TEST(options_go_first),
-                                       JOB_TEST(the_studio_is_turned_and_dimmed),
-                                       JOB_TEST(surroundings_of_the_scene_are_turned_further),
-                                       JOB_TEST(none_takes_the_surroundings_away), JOB_TEST(pictures_are_read),
-                                       JOB_TEST(what_is_no_picture_is_refused)};
+    const struct CMUnitTest tests[] = {
+        JOB_TEST(scenes_without_light_get_the_studio), JOB_TEST(only_bright_emission_counts),
+        JOB_TEST(unlit_surfaces_light_nothing),        JOB_TEST(options_go_first),
+        JOB_TEST(the_studio_is_turned_and_dimmed),     JOB_TEST(surroundings_of_the_scene_are_turned_further),
+        JOB_TEST(none_takes_the_surroundings_away),    JOB_TEST(pictures_are_read),
+        JOB_TEST(what_is_no_picture_is_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,7 +27,8 @@ static void suffixes_choose_the_format(void **state) {
     const struct { const char *path; output_kind kind; } rows[] = {
         {"a.PNG", OUTPUT_DISPLAY}, {"-", OUTPUT_DISPLAY}, {"a.b/c.jpeg", OUTPUT_DISPLAY}, {"x.exr", OUTPUT_EXR},
         {"x.hdr", OUTPUT_HDR},     {"x.bmp", OUTPUT_UNKNOWN}, {"png", OUTPUT_UNKNOWN},    {"", OUTPUT_UNKNOWN}};
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) assert_int_equal(output_kind_of(rows[i].path), rows[i].kind);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        assert_int_equal(output_kind_of(rows[i].path), rows[i].kind);
 }
 
 static void assert_refused(fixture *f, const char *text) {

@@ -78,7 +78,8 @@ static void it_turns_with_the_camera(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {JOB_TEST(grey_cards_come_out_as_authored), JOB_TEST(it_is_neutral_and_nowhere_black),
-                                       JOB_TEST(the_backdrop_is_plain), JOB_TEST(it_turns_with_the_camera)};
+    const struct CMUnitTest tests[] = {JOB_TEST(grey_cards_come_out_as_authored),
+                                       JOB_TEST(it_is_neutral_and_nowhere_black), JOB_TEST(the_backdrop_is_plain),
+                                       JOB_TEST(it_turns_with_the_camera)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

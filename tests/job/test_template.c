@@ -41,8 +41,16 @@ static void what_is_filled_in_stays_in_its_folder(void **state) {
 
 static void other_fields_are_refused(void **state) {
     (void)state;
-    const char *const patterns[] = {"{nam}", "{", "a}", "{frame:}", "{frame:0}", "{frame:19}", "{frames}", "{name",
-                                    "{xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx}"};
+    const char *const patterns[] = {
+        "{nam}",
+        "{",
+        "a}",
+        "{frame:}",
+        "{frame:0}",
+        "{frame:19}",
+        "{frames}",
+        "{name",
+        "{xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx}"};
     for (size_t i = 0; i < sizeof patterns / sizeof *patterns; i++) {
         kiln_report *report = kiln_report_create();
         kiln_text out = {0};
@@ -55,8 +63,10 @@ static void other_fields_are_refused(void **state) {
 
 static void assets_are_named_by_their_files(void **state) {
     (void)state;
-    const struct { const char *path, *name; } rows[] = {{"a/b/car.final.glb", "car.final"}, {"car", "car"}, {"-", "stdin"},
-                                                        {".glb", ".glb"}, {"a.d/", "scene"}, {"Unicode ❤♻.gltf", "Unicode ❤♻"}};
+    const struct {
+        const char *path, *name;
+    } rows[] = {{"a/b/car.final.glb", "car.final"}, {"car", "car"}, {"-", "stdin"}, {".glb", ".glb"}, {"a.d/", "scene"},
+                {"Unicode ❤♻.gltf", "Unicode ❤♻"}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         char *name = template_asset_name(rows[i].path);
         assert_string_equal(name, rows[i].name);
