@@ -1,6 +1,7 @@
 #include "tests/golden/golden.h"
 
 #include <ftw.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,11 +40,30 @@ static bool write_kept(const char *name, const char *text) {
     return written;
 }
 
-static bool compare(const char *name, const char *kept, const char *text) {
+/* Two lines of words: alike, or numbers that differ by no more than the tolerance's part of the greater. */
+static bool close_lines(const char *a, const char *b, double tolerance) {
+    for (;;) {
+        a += strspn(a, " "), b += strspn(b, " ");
+        size_t n = strcspn(a, " \n"), m = strcspn(b, " \n");
+        if (n == 0 || m == 0) return n == m;
+        char *a_end, *b_end;
+        double x = strtod(a, &a_end), y = strtod(b, &b_end);
+        bool numbers = a_end == a + n && b_end == b + m;
+        if (numbers ? !(fabs(x - y) <= tolerance * fmax(fabs(x), fabs(y))) : n != m || memcmp(a, b, n) != 0) return false;
+        a += n, b += m;
+    }
+}
+
+static bool same_lines(const char *a, const char *b) {
+    size_t n = strcspn(a, "\n");
+    return n == strcspn(b, "\n") && memcmp(a, b, n) == 0;
+}
+
+static bool compare(const char *name, const char *kept, const char *text, double tolerance) {
     int line = 1;
     while (*kept && *text) {
+        if (!same_lines(kept, text) && !(tolerance > 0 && close_lines(kept, text, tolerance))) break;
         size_t a = strcspn(kept, "\n"), b = strcspn(text, "\n");
-        if (a != b || memcmp(kept, text, a) != 0) break;
         kept += a + (kept[a] == '\n');
         text += b + (text[b] == '\n');
         line++;
@@ -54,11 +74,13 @@ static bool compare(const char *name, const char *kept, const char *text) {
     return false;
 }
 
-bool golden_matches(const char *name, const char *text) {
+bool golden_matches(const char *name, const char *text) { return golden_matches_within(name, text, 0); }
+
+bool golden_matches_within(const char *name, const char *text, double tolerance) {
     if (golden_updates()) return write_kept(name, text);
     kiln_bytes kept;
     if (!read_kept(name, &kept)) return false;
-    bool same = compare(name, (const char *)kept.data, text);
+    bool same = compare(name, (const char *)kept.data, text, tolerance);
     file_free(&kept);
     return same;
 }
@@ -126,7 +148,7 @@ static bool check_section(const char *name, const char *root, char **at, void (*
         text_append(&kept, section);
         if (next) text_append(&kept, "\n");
         append_section(&now, root, path, describe);
-        same = compare(path, kept.data, now.data);
+        same = compare(path, kept.data, now.data, 0);
         if (!same) printf("  in %s\n", name);
     }
     text_free(&whole);

@@ -12,6 +12,9 @@ bool golden_updates(void);
 /* Is text what tests/data/NAME holds? Prints the first line that differs. */
 bool golden_matches(const char *name, const char *text);
 
+/* The same for a text of words and numbers apart by spaces, whose numbers may differ by a part of what they are. */
+bool golden_matches_within(const char *name, const char *text, double tolerance);
+
 /* A text about many files of a folder that may not be there: a section "== PATH" with what describe appends for each.
  * Sections whose file is missing are passed over; when updating, every file under root that ends in one of the
  * suffixes gets one. */

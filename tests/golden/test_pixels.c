@@ -1,5 +1,5 @@
 /* For every feature a pair of files that differ in it alone: their pictures differ too. The pictures' means stand in a
- * golden text; they were looked at once. */
+ * golden text, to within what other random numbers change; they were looked at once. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -92,12 +92,12 @@ static void features_are_seen(void **state) {
         float *a = shoot_side(names[i], "a"), *b = shoot_side(names[i], "b");
         int pixels = differing(a, b);
         if (pixels < 8) fail_msg("%s: only %d pixels differ", names[i], pixels);
-        text_format(&text, "%-32s %7.4f %7.4f  %5.1f %% differ\n", names[i], mean(a), mean(b), 100.0 * pixels / (SIDE * SIDE));
+        text_format(&text, "%-32s %7.4f %7.4f\n", names[i], mean(a), mean(b));
         free(a);
         free(b);
     }
     pair_names_free(names, count);
-    assert_true(golden_matches("gltf/pairs.pixels", text.data));
+    assert_true(golden_matches_within("gltf/pairs.pixels", text.data, 0.01));
     text_free(&text);
 }
 
