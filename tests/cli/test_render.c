@@ -5,6 +5,7 @@
 
 #include <cmocka.h>
 #include <jansson.h>
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -120,6 +121,30 @@ static void a_crop_is_that_part_of_the_whole(void **state) {
             }
     free(whole);
     free(crop);
+}
+
+/* The corner of a picture of an asset that auto frames is empty. */
+static void backgrounds_are_what_was_asked_for(void **state) {
+    const place *p = *state;
+    uint32_t w, h, c;
+    assert_runs(p, "render", SCENE, "--camera", "auto", "--size", "16x16", "--spp", "4", "--background", "#ff8000", "-o",
+                "a.png", "-o", "a.exr");
+    float *shown = read_picture(p, "a.png", &w, &h, &c);
+    assert_int_equal(c, 3);
+    assert_true(shown[0] == 1 && shown[1] == 128 / 255.0f && shown[2] == 0);
+    free(shown);
+    shown = read_picture(p, "a.exr", &w, &h, &c);
+    assert_true(fabsf(shown[0] - 1) < 1e-6f && fabsf(shown[1] - 0.21586f) < 1e-4f && shown[2] == 0); /* sRGB's curve */
+    free(shown);
+    assert_runs(p, "render", SCENE, "--camera", "auto", "--size", "16x16", "--spp", "4", "--background", "transparent",
+                "-o", "a.png", "-o", "a.exr");
+    const char *const names[] = {"a.png", "a.exr"};
+    for (int i = 0; i < 2; i++) {
+        shown = read_picture(p, names[i], &w, &h, &c);
+        assert_int_equal(c, 4);
+        assert_true(shown[3] == 0 && shown[4 * (8 * 16 + 8) + 3] == 1);
+        free(shown);
+    }
 }
 
 static void holds_text(const place *p, const char *file, const char *text) {
@@ -266,6 +291,7 @@ int main(void) {
                                        CLI_TEST(templates_are_filled_in),
                                        CLI_TEST(threads_and_runs_change_no_bit),
                                        CLI_TEST(a_crop_is_that_part_of_the_whole),
+                                       CLI_TEST(backgrounds_are_what_was_asked_for),
                                        CLI_TEST(files_say_how_they_were_made),
                                        CLI_TEST(pngs_are_reproducible),
                                        CLI_TEST(numbers_do_not_depend_on_the_locale),

@@ -203,6 +203,29 @@ static void missed_goals_are_told(void **state) {
     kiln_job_destroy(job);
 }
 
+/* Lights in candela and lux have no natural exposure; what is not shown, and not judged by its noise, needs none. */
+static void exposures_are_chosen_where_lights_have_units(void **state) {
+    fixture *f = *state;
+    char path[256];
+    const struct {
+        const char *scene, *output, *exposure;
+        bool chosen;
+    } rows[] = {{PAIR("light_spot_a"), "a.png", NULL, true},
+                {PAIR("light_spot_a"), "a.exr", NULL, false},
+                {PAIR("light_spot_a"), "a.png", "0", false},
+                {PAIR("unlit_b"), "a.png", "1", false}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        kiln_job *job = job_of(f, (const char *const[]){"size", "16x16", "spp", "4", "output",
+                                                        path_in(f, rows[i].output, path), NULL});
+        if (rows[i].exposure) assert_done(f, kiln_job_set(job, "exposure", rows[i].exposure, f->report));
+        assert_done(f, kiln_job_render(job, rows[i].scene, f->report));
+        json_t *stats = stats_of(job);
+        assert_true(json_is_true(find(stats, "picture.exposure_chosen")) == rows[i].chosen);
+        json_decref(stats);
+        kiln_job_destroy(job);
+    }
+}
+
 /* A white furnace of the scene's own: a diffuse box under even light shows its albedo; the job borrows the scene. */
 static void scenes_of_a_program_are_rendered(void **state) {
     fixture *f = *state;
@@ -284,6 +307,7 @@ int main(void) {
                                        JOB_TEST(cancelled_before_it_began_nothing_is_left),
                                        JOB_TEST(strict_refuses_warnings_before_it_renders),
                                        JOB_TEST(missed_goals_are_told),
+                                       JOB_TEST(exposures_are_chosen_where_lights_have_units),
                                        JOB_TEST(scenes_of_a_program_are_rendered),
                                        JOB_TEST(assets_are_inspected),
                                        JOB_TEST(the_machine_and_its_libraries_are_told)};
