@@ -175,7 +175,7 @@ static uint32_t load(const ray_lanes *rays, uint32_t first, struct RTCRay16 *r, 
 
 void accel_closest(const world *w, const ray_lanes *rays, float *t, float *u, float *v, uint32_t *triangle,
                    uint32_t *instance, trace_counts *counts) {
-    coverage_context context = {.world = w, .coverage = rays->coverage};
+    coverage_context context = {.world = w, .coverage = &rays->coverage};
     embree_init_context(&context.embree);
     for (uint32_t first = 0; first < rays->count; first += WIDTH) {
         struct RTCRayHit16 packet;
@@ -203,7 +203,7 @@ void accel_closest(const world *w, const ray_lanes *rays, float *t, float *u, fl
 }
 
 void accel_visible(const world *w, const ray_lanes *rays, uint32_t *visible, trace_counts *counts) {
-    coverage_context context = {.world = w, .coverage = rays->coverage};
+    coverage_context context = {.world = w, .coverage = &rays->coverage};
     embree_init_context(&context.embree);
     for (uint32_t first = 0; first < rays->count; first += WIDTH) {
         struct RTCRay16 packet;

@@ -5,6 +5,7 @@
 #ifndef KILN_RENDER_ACCEL_ACCEL_H
 #define KILN_RENDER_ACCEL_ACCEL_H
 
+#include "render/sample/sampler.h"
 #include "render/world/world.h"
 
 typedef struct accel accel;
@@ -21,11 +22,19 @@ void embree_version(char text[EMBREE_VERSION_MAX]);
 #define TRIANGLE_NONE UINT32_MAX        /* the ray leaves the scene */
 #define TRIANGLE_REFUSED (UINT32_MAX - 1) /* the ray was not one: non-finite, or of no direction */
 
+/* What decides whether a ray stops at partial coverage: its sample_point, in arrays as the rays are, and the purpose and
+ * depth that all of them have. */
+typedef struct ray_coverage {
+    const uint32_t *seed, *index; /* NULL, both: one point for all */
+    uint32_t key; /* of the sampler */
+    int independent;
+} ray_coverage;
+
 /* Rays as arrays, `count` of them, or those that lanes names. Directions are of unit length. */
 typedef struct ray_lanes {
     const float *ox, *oy, *oz, *dx, *dy, *dz;
     const float *tnear, *tfar; /* NULL: the smallest above 0, infinity */
-    const float *coverage;     /* a random number for each ray: does it stop at partial coverage? */
+    ray_coverage coverage;
     const uint32_t *lanes;     /* NULL: 0 … count − 1 */
     uint32_t count;
 } ray_lanes;

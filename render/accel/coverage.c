@@ -1,7 +1,5 @@
 #include "render/accel/coverage.h"
 
-#include "base/hash.h"
-
 float coverage_alpha(const world *w, uint32_t triangle, float u, float v) {
     const world_material *m = &w->materials[w->triangle_material[triangle]];
     const uint32_t *i = w->triangles + 3 * (size_t)triangle;
@@ -20,13 +18,14 @@ float coverage_alpha(const world *w, uint32_t triangle, float u, float v) {
     return alpha;
 }
 
-static bool stops(const world *w, uint32_t triangle, uint32_t instance, float u, float v, float coin) {
+static bool stops(const coverage_context *c, uint32_t ray, uint32_t triangle, uint32_t instance, float u, float v) {
+    const world *w = c->world;
     const world_material *m = &w->materials[w->triangle_material[triangle]];
     float alpha = coverage_alpha(w, triangle, u, v);
     if (m->flags & MATERIAL_MASK) return alpha >= m->alpha_cutoff;
-    /* The ray's own number, turned by the triangle: stratified over the samples of a pixel for each surface. */
-    float turned = coin + unit_float(hash_pair(triangle, instance));
-    return turned - fm_floor(turned) < alpha;
+    const ray_coverage *r = c->coverage;
+    sample_point p = {r->index ? r->index[ray] : 0, r->seed ? r->seed[ray] : 0};
+    return sample_keyed(r->independent, p, hash_triple(r->key, triangle, instance)).x < alpha;
 }
 
 /* Arrays of N, as Embree lays out RTCRayN and RTCHitN; its C++ accessors are no use to C. */
@@ -43,7 +42,7 @@ void coverage_filter(const struct RTCFilterFunctionNArguments *args) {
         uint32_t placed = hit[HIT_INSTANCE * n + k];
         uint32_t instance = placed == RTC_INVALID_GEOMETRY_ID ? 0 : placed - 1;
         uint32_t triangle = w->instances[instance].triangle_base[hit[HIT_GEOMETRY * n + k]] + hit[HIT_PRIMITIVE * n + k];
-        float coin = context->coverage[ray[RAY_ID * n + k]];
-        if (!stops(w, triangle, instance, hit_f[HIT_U * n + k], hit_f[HIT_V * n + k], coin)) args->valid[k] = 0;
+        if (!stops(context, ray[RAY_ID * n + k], triangle, instance, hit_f[HIT_U * n + k], hit_f[HIT_V * n + k]))
+            args->valid[k] = 0;
     }
 }

@@ -1,18 +1,19 @@
 /* render/accel/coverage.h: partial coverage (alpha) as Embree's filter.
  *
  * MASK compares alpha with a cutoff; BLEND is a coin that is a pure function of (ray, triangle), so neither the order in
- * which Embree visits triangles nor a second visit can change an outcome. */
+ * which Embree visits triangles nor a second visit can change an outcome. Each triangle has a sequence of its own:
+ * stratified over the samples of a pixel, and independent of the sheets before and behind it. */
 #ifndef KILN_RENDER_ACCEL_COVERAGE_H
 #define KILN_RENDER_ACCEL_COVERAGE_H
 
+#include "render/accel/accel.h"
 #include "render/accel/embree.h"
-#include "render/world/world.h"
 
 /* What a query hands to the filter; Embree's context comes first. */
 typedef struct coverage_context {
     embree_context embree;
     const world *world;
-    const float *coverage; /* by ray id */
+    const ray_coverage *coverage; /* arrays by ray id */
 } coverage_context;
 
 /* Alpha of a triangle at (u, v): opacity times texture times vertex colour. */

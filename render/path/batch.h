@@ -95,8 +95,8 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) } path_hit;
 
 /* Random numbers of a bounce. */
 #define RANDOM_FIELDS(X)                                                                                               \
-    X(float, u_light_x) X(float, u_light_y) X(float, u_fine) X(float, u_shadow)                                        \
-    X(float, u_bsdf_x) X(float, u_bsdf_y) X(float, u_lobe) X(float, u_roulette) X(float, u_coverage)
+    X(float, u_light_x) X(float, u_light_y) X(float, u_fine)                                                           \
+    X(float, u_bsdf_x) X(float, u_bsdf_y) X(float, u_lobe) X(float, u_roulette)
 
 typedef struct path_scratch {
     TRIANGLE_FIELDS(LANE_ARRAY)

@@ -16,10 +16,10 @@ static void set_frame(camera *c, const kiln_camera *from) {
 /* Distance along the axis to what the middle of the picture sees; the scene's size when it sees nothing. */
 static float focus_on_middle(const world *w, const camera *c) {
     vec3 d = v3_neg(c->back);
-    float zero = 0, t, u, v;
+    float t, u, v;
     uint32_t triangle, instance;
     trace_counts counts = {0};
-    ray_lanes ray = {&c->origin.x, &c->origin.y, &c->origin.z, &d.x, &d.y, &d.z, &c->near, &c->far, &zero, NULL, 1};
+    ray_lanes ray = {&c->origin.x, &c->origin.y, &c->origin.z, &d.x, &d.y, &d.z, &c->near, &c->far, {0}, NULL, 1};
     accel_closest(w, &ray, &t, &u, &v, &triangle, &instance, &counts);
     return triangle < TRIANGLE_REFUSED && t > 0 ? t : fmaxf(v3_length(c->origin), w->radius);
 }

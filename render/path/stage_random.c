@@ -9,9 +9,8 @@ void STAGE(random)(const path_context *c, batch *b) {
         LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
             sample_point p = {s->index[i], s->seed[i]};
             vec2 place = sample_pair(independent, p, SAMPLE_LIGHT, depth);
-            vec2 fine = sample_pair(independent, p, SAMPLE_LIGHT_FINE, depth);
             x->u_light_x[i] = place.x, x->u_light_y[i] = place.y;
-            x->u_fine[i] = fine.x, x->u_shadow[i] = fine.y;
+            x->u_fine[i] = sample_pair(independent, p, SAMPLE_LIGHT_FINE, depth).x;
         }
     }
     LANE_LOOP (uint32_t i = 0; i < b->n; i++) {

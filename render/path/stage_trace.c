@@ -41,25 +41,14 @@ static void look_through(const path_context *c, batch *b, ray_lanes *rays) {
     }
 }
 
-static void draw_coverage(const path_context *c, batch *b) {
-    const path_state *s = batch_state(b);
-    path_scratch *x = &b->scratch;
-    uint32_t depth = b->depth;
-    int independent = c->independent;
-    LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
-        sample_point p = {s->index[i], s->seed[i]};
-        x->u_coverage[i] = sample_pair(independent, p, SAMPLE_COVERAGE, depth).x;
-    }
-}
-
 void STAGE(trace)(const path_context *c, batch *b) {
     const path_state *s = batch_state(b);
     path_hit *h = batch_hit(b);
     path_scratch *x = &b->scratch;
     bool first = b->depth == 0;
-    if (c->world->flags & (MATERIAL_MASK | MATERIAL_BLEND)) draw_coverage(c, b);
+    ray_coverage coverage = {s->seed, s->index, sample_key(SAMPLE_COVERAGE, b->depth), c->independent};
     ray_lanes rays = {s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, first ? x->tnear : NULL, first ? x->tfar : NULL,
-                      x->u_coverage, NULL, b->n};
+                      coverage, NULL, b->n};
     accel_closest(c->world, &rays, h->t, h->u, h->v, h->triangle, h->instance, first ? &b->camera_rays : &b->bounce_rays);
     if (first && c->world->single_sided) look_through(c, b, &rays);
 }

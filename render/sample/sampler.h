@@ -69,10 +69,12 @@ static inline vec2 sample_independent(sample_point p, uint32_t key) {
     return (vec2){unit_float(x), unit_float(hash32(x + 0x9e3779b9u))};
 }
 
+static inline vec2 sample_keyed(int independent, sample_point p, uint32_t key) {
+    return independent ? sample_independent(p, key) : sample_sobol(p, key);
+}
 /* The numbers of a purpose at a depth; independent is a constant at the call. */
 static inline vec2 sample_pair(int independent, sample_point p, sample_purpose purpose, uint32_t depth) {
-    uint32_t key = sample_key(purpose, depth);
-    return independent ? sample_independent(p, key) : sample_sobol(p, key);
+    return sample_keyed(independent, p, sample_key(purpose, depth));
 }
 
 #endif

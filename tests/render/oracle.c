@@ -24,6 +24,10 @@ static vec2 draw(const path_context *c, const path *p, sample_purpose purpose) {
     return sample_pair(c->independent, p->point, purpose, p->depth);
 }
 
+static ray_coverage coverage_of(const path_context *c, const path *p, sample_purpose purpose) {
+    return (ray_coverage){&p->point.seed, &p->point.index, sample_key(purpose, p->depth), c->independent};
+}
+
 static path start(const path_context *c, path_sample s) {
     path p = {.point = sample_point_make(c->seed, s.y << 16 | s.x, s.n), .throughput = {1, 1, 1}, .squeeze = 1};
     vec2 pixel = draw(c, &p, SAMPLE_PIXEL), lens = draw(c, &p, SAMPLE_LENS);
@@ -47,12 +51,13 @@ static vec3 place_normal(const float *m, const float *p) {
 /* Closest hit, with single-sided surfaces that the camera sees from behind looked through. */
 static bool find(const path_context *c, path *p, hit *h) {
     const world *w = c->world;
-    float coverage = draw(c, p, SAMPLE_COVERAGE).x, t, u, v;
+    ray_coverage coverage = coverage_of(c, p, SAMPLE_COVERAGE);
+    float t, u, v;
     trace_counts counts = {0};
     float near = p->depth ? 0.0f : p->near, far = p->depth ? INFINITY : p->far;
     for (;;) {
         ray_lanes ray = {&p->origin.x, &p->origin.y, &p->origin.z, &p->direction.x, &p->direction.y, &p->direction.z,
-                         &near, &far, &coverage, NULL, 1};
+                         &near, &far, coverage, NULL, 1};
         accel_closest(w, &ray, &t, &u, &v, &h->triangle, &h->instance, &counts);
         if (h->triangle >= TRIANGLE_REFUSED) return false;
         const uint32_t *i = w->triangles + 3 * (size_t)h->triangle;
@@ -187,12 +192,12 @@ static unsigned mask_of(material_kind kind) {
 static void connect(const path_context *c, path *p, const hit *h, const shading *s, unsigned mask) {
     const world *w = c->world;
     const light_table *t = &w->lights;
-    vec2 place = draw(c, p, SAMPLE_LIGHT), fine = draw(c, p, SAMPLE_LIGHT_FINE);
-    float rest;
-    uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, place.x, fine.x, &rest);
+    vec2 place = draw(c, p, SAMPLE_LIGHT);
+    float rest, fine = draw(c, p, SAMPLE_LIGHT_FINE).x;
+    uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, place.x, fine, &rest);
     light l = t->lights[k];
     place.x = rest;
-    if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, place, fine.x, &l);
+    if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, place, fine, &l);
     light_sampled r = light_sample(KIND(LIGHT_KINDS) - 1, &l, s->position, place);
     if (l.texture) {
         vec2 at = warp_triangle(place);
@@ -213,7 +218,7 @@ static void connect(const path_context *c, path *p, const hit *h, const shading 
     uint32_t visible = RAY_STOPPED;
     trace_counts counts = {0};
     ray_lanes ray = {&n.origin.x, &n.origin.y, &n.origin.z, &n.direction.x, &n.direction.y, &n.direction.z,
-                     NULL, &n.far, &fine.y, NULL, 1};
+                     NULL, &n.far, coverage_of(c, p, SAMPLE_LIGHT_FINE), NULL, 1};
     accel_visible(w, &ray, &visible, &counts);
     if (visible == RAY_REACHES) p->radiance = v3_add(p->radiance, n.contribution);
 }
