@@ -12,7 +12,9 @@
 
 #include "base/mat.h"
 #include "render/film/film.h"
+#include "render/world/world.h"
 #include "scene/scene.h"
+#include "scene/transfer.h"
 
 void must(bool ok, const kiln_report *report, const char *what) {
     if (ok) return;
@@ -49,18 +51,25 @@ kiln_id add_material(scene_builder *b, const kiln_material *m) {
     return id;
 }
 
-static void add_mesh(scene_builder *b, const kiln_mesh_desc *desc) {
-    kiln_instance_desc instance = {0};
-    must(kiln_scene_add_mesh(b->scene, desc, &instance.mesh, b->report), b->report, "adding a mesh");
+kiln_id add_mesh(scene_builder *b, const kiln_mesh_desc *desc) {
+    kiln_id id;
+    must(kiln_scene_add_mesh(b->scene, desc, &id, b->report), b->report, "adding a mesh");
+    return id;
+}
+
+void add_instance(scene_builder *b, kiln_id mesh, const double transform[16]) {
+    kiln_instance_desc instance = {.mesh = mesh, .time_count = transform ? 1 : 0, .transforms = transform};
     must(kiln_scene_add_instance(b->scene, &instance, NULL, b->report), b->report, "adding an instance");
 }
+
+static void show(scene_builder *b, const kiln_mesh_desc *desc) { add_instance(b, add_mesh(b, desc), NULL); }
 
 void add_quad(scene_builder *b, kiln_id material, const float corners[12]) {
     const uint32_t faces[6] = {0, 1, 2, 0, 2, 3};
     const float uvs[8] = {0, 1, 1, 1, 1, 0, 0, 0};
     kiln_primvar uv = {.kind = KILN_PRIMVAR_UV, .values = uvs, .value_count = 4};
-    add_mesh(b, &(kiln_mesh_desc){.name = "quad", .vertex_count = 4, .positions = corners, .face_count = 2,
-                                  .face_vertices = faces, .primvars = &uv, .primvar_count = 1, .material = material});
+    show(b, &(kiln_mesh_desc){.name = "quad", .vertex_count = 4, .positions = corners, .face_count = 2,
+                              .face_vertices = faces, .primvars = &uv, .primvar_count = 1, .material = material});
 }
 
 void add_sphere(scene_builder *b, kiln_id material, const float center[3], float radius, int segments, int flags) {
@@ -86,9 +95,9 @@ void add_sphere(scene_builder *b, kiln_id material, const float center[3], float
                 for (int k = 0; k < 3; k++) faces[count++] = quad[3 * t + (inward && k ? 3 - k : k)];
         }
     kiln_primvar normal = {.kind = KILN_PRIMVAR_NORMAL, .values = normals, .value_count = vertices};
-    add_mesh(b, &(kiln_mesh_desc){.name = "sphere", .vertex_count = vertices, .positions = positions,
-                                  .face_count = count / 3, .face_vertices = faces, .primvars = &normal,
-                                  .primvar_count = flags & SPHERE_FLAT ? 0 : 1, .material = material});
+    show(b, &(kiln_mesh_desc){.name = "sphere", .vertex_count = vertices, .positions = positions,
+                              .face_count = count / 3, .face_vertices = faces, .primvars = &normal,
+                              .primvar_count = flags & SPHERE_FLAT ? 0 : 1, .material = material});
     free(positions);
     free(normals);
     free(faces);
@@ -100,8 +109,8 @@ void add_box(scene_builder *b, kiln_id material, const float low[3], const float
         for (int k = 0; k < 3; k++) p[3 * i + k] = i >> k & 1 ? high[k] : low[k];
     const uint32_t sizes[6] = {4, 4, 4, 4, 4, 4};
     const uint32_t faces[24] = {0, 4, 6, 2, 1, 3, 7, 5, 0, 1, 5, 4, 2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6};
-    add_mesh(b, &(kiln_mesh_desc){.name = "box", .vertex_count = 8, .positions = p, .face_count = 6,
-                                  .face_sizes = sizes, .face_vertices = faces, .material = material});
+    show(b, &(kiln_mesh_desc){.name = "box", .vertex_count = 8, .positions = p, .face_count = 6,
+                              .face_sizes = sizes, .face_vertices = faces, .material = material});
 }
 
 static void look(double m[16], const float eye[3], const float at[3]) {
@@ -112,16 +121,16 @@ static void look(double m[16], const float eye[3], const float at[3]) {
     memcpy(m, matrix, sizeof matrix);
 }
 
-void add_light(scene_builder *b, const kiln_light *light) {
-    must(kiln_scene_add_light(b->scene, light, NULL, b->report), b->report, "adding a light");
+void add_light(scene_builder *b, const kiln_light *l) {
+    must(kiln_scene_add_light(b->scene, l, NULL, b->report), b->report, "adding a light");
 }
 
 kiln_light light_at(kiln_light_kind kind, const float position[3], const float at[3], float intensity) {
-    kiln_light light = kiln_light_default();
-    light.kind = kind;
-    light.intensity = intensity;
-    look(light.transform, position, at);
-    return light;
+    kiln_light l = kiln_light_default();
+    l.kind = kind;
+    l.intensity = intensity;
+    look(l.transform, position, at);
+    return l;
 }
 
 kiln_id add_image(scene_builder *b, const float *rgb, uint32_t width, uint32_t height) {
@@ -173,9 +182,22 @@ picture render_with(const kiln_renderer *renderer, const kiln_render_options *op
     return p;
 }
 
+static void commit(scene_builder *b) {
+    if (!b->scene->committed) must(kiln_scene_commit(b->scene, b->report), b->report, "committing");
+}
+
+world *build_world(scene_builder *b) {
+    kiln_decoding decoding;
+    transfer_rec709(&decoding);
+    world *w;
+    commit(b);
+    must(world_create(b->scene, &decoding, 1, NULL, &w, b->report), b->report, "building the world");
+    return w;
+}
+
 picture render(scene_builder *b, const kiln_camera *camera, const kiln_render_options *options, uint32_t width,
                uint32_t height) {
-    if (!b->scene->committed) must(kiln_scene_commit(b->scene, b->report), b->report, "committing");
+    commit(b);
     kiln_renderer *renderer;
     must(kiln_renderer_create(b->scene, &(kiln_renderer_options){.threads = 2}, &renderer, b->report), b->report,
          "making a renderer");

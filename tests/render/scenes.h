@@ -4,6 +4,8 @@
 
 #include "kiln/render.h"
 
+struct world;
+
 /* A scene under construction; every call must succeed, or the test fails. */
 typedef struct scene_builder {
     kiln_scene *scene;
@@ -17,6 +19,9 @@ void builder_free(scene_builder *);
 kiln_material diffuse_material(float r, float g, float b);
 kiln_id add_material(scene_builder *, const kiln_material *);
 
+/* A mesh that is in the picture only where instances place it (NULL: where it is). */
+kiln_id add_mesh(scene_builder *, const kiln_mesh_desc *);
+void add_instance(scene_builder *, kiln_id mesh, const double transform[16]);
 /* a, b, c, d counter-clockwise seen from the front; UV (0,1) (1,1) (1,0) (0,0). */
 void add_quad(scene_builder *, kiln_id material, const float corners[12]);
 /* Latitude-longitude sphere. INWARD: it faces its centre. FLAT: no normals. */
@@ -45,6 +50,9 @@ typedef struct picture {
     kiln_render_stats stats;
     kiln_film *film;
 } picture;
+
+/* Commits the scene and reads it as a renderer does, in linear Rec.709; the caller destroys the world. */
+struct world *build_world(scene_builder *);
 
 /* Commits the scene if that is still due. Never fails: the test does. */
 picture render(scene_builder *, const kiln_camera *, const kiln_render_options *, uint32_t width, uint32_t height);
