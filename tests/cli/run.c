@@ -196,7 +196,7 @@ bool same_bytes(const place *p, const char *a, const char *b) {
 }
 
 float *read_picture(const place *p, const char *name, uint32_t *width, uint32_t *height, uint32_t *channels) {
-    size_t size;
+    size_t size = 0;
     kiln_image image;
     kiln_report *report = kiln_report_create();
     kiln_where where = where_root(name);
