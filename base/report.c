@@ -69,13 +69,18 @@ uint64_t kiln_report_count(const kiln_report *report, kiln_severity severity) { 
 const char *kiln_code_name(kiln_code code) { return code_rows[code].name; }
 int kiln_report_exit_code(const kiln_report *report) { return report->first_error_exit; }
 
-/* "car.glb: materials[4].normalTexture" */
 static void append_where(kiln_text *text, const kiln_where *where) {
     if (!where) return;
     append_where(text, where->parent);
     if (where->parent) text_append(text, where->parent->parent ? "." : ": ");
     text_append(text, where->name);
     if (where->index != KILN_NO_INDEX) text_format(text, "[%zu]", where->index);
+}
+
+char *where_text(const kiln_where *where) {
+    kiln_text text = {0};
+    append_where(&text, where);
+    return text_take(&text);
 }
 
 static entry *find(kiln_report *report, kiln_severity severity, kiln_code code, const char *what) {
@@ -104,9 +109,7 @@ static void store(kiln_report *report, kiln_severity severity, kiln_code code, c
         return;
     }
     if (report->count >= (severity == KILN_ERROR ? 2 * MESSAGES_MAX : MESSAGES_MAX)) return;
-    kiln_text place = {0};
-    append_where(&place, where);
-    kiln_message m = {severity, code, text_take(&place), strdup(what), strdup(remedy ? remedy : ""), 1};
+    kiln_message m = {severity, code, where_text(where), strdup(what), strdup(remedy ? remedy : ""), 1};
     if (!m.where || !m.what || !m.remedy || !reserve(report)) {
         free((char *)m.where);
         free((char *)m.what);

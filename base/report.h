@@ -25,6 +25,9 @@ static inline kiln_where where_item(const kiln_where *parent, const char *name, 
     return (kiln_where){parent, name, index};
 }
 
+/* "car.glb: materials[4].normalTexture"; free(). NULL: out of memory. */
+char *where_text(const kiln_where *);
+
 #define KILN_PRINTF(format_at, args_at) __attribute__((format(printf, format_at, args_at)))
 
 /* Adds an error and returns false, so that a caller can `return report_error(…)`. where and remedy may be NULL. */

@@ -27,7 +27,8 @@ static bool keep_bytes(kiln_scene *scene, kiln_image_desc *image, kiln_report *r
                                        image->channels * value_bytes[image->format]);
     }
     image->name = arena_string(&scene->arena, image->name);
-    return (image->name && (image->encoded || image->pixels)) || report_no_memory(report, "keeping an image");
+    image->place = arena_string(&scene->arena, image->place);
+    return (image->name && image->place && (image->encoded || image->pixels)) || report_no_memory(report, "keeping an image");
 }
 
 bool kiln_scene_add_image(kiln_scene *scene, const kiln_image_desc *desc, kiln_id *id, kiln_report *report) {

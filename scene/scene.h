@@ -55,6 +55,10 @@ static inline const kiln_image_desc *scene_image(const kiln_scene *s, kiln_id id
 static inline const kiln_material *scene_material(const kiln_scene *s, kiln_id id) {
     return id ? &s->materials[id - 1] : &s->default_material;
 }
+/* What messages about an image of a scene begin with. */
+static inline const char *scene_image_place(const kiln_image_desc *image) {
+    return *image->place ? image->place : *image->name ? image->name : "image";
+}
 static inline const kiln_mesh *scene_mesh(const kiln_scene *s, kiln_id id) { return &s->meshes[id - 1]; }
 static inline const kiln_instance *scene_instance(const kiln_scene *s, kiln_id id) { return &s->instances[id - 1]; }
 static inline const kiln_light *scene_light(const kiln_scene *s, kiln_id id) { return &s->lights[id - 1]; }

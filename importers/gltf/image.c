@@ -1,7 +1,9 @@
 #include "image/image.h"
 
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "importers/gltf/reader.h"
 
 /* Encoded bytes, and who owns them. */
@@ -61,6 +63,19 @@ static const char *name_of(gltf_reader *r, const gltf_source *source) {
     return uri && strncmp(uri, "data:", 5) != 0 ? path_base(uri) : "";
 }
 
+/* For what turns out to be wrong only when the image is decoded: "car.glb: images[1] (wood.png)". NULL: no memory. */
+static const char *place_of(gltf_reader *r, const char *name, const kiln_where *where) {
+    char *place = where_text(where);
+    kiln_text text = {0};
+    text_append(&text, place ? place : "");
+    if (*name) text_format(&text, " (%s)", name);
+    const char *kept = place && text.data ? arena_string(&r->arena, text.data) : NULL;
+    if (!kept) report_no_memory(r->report, "reading a glTF file");
+    text_free(&text);
+    free(place);
+    return kept;
+}
+
 bool gltf_add_image(gltf_reader *r, int image, kiln_id *id) {
     if (r->images[image]) {
         *id = r->images[image];
@@ -68,13 +83,14 @@ bool gltf_add_image(gltf_reader *r, int image, kiln_id *id) {
     }
     const gltf_source *source = &r->envelope.images.items[image];
     kiln_where here = where_item(&r->file, "images", (size_t)image);
+    const char *name = name_of(r, source), *place = place_of(r, name, &here);
     encoded e = {0};
-    if (!open_image(r, source, &e, &here)) return false;
+    if (!place || !open_image(r, source, &e, &here)) return false;
     if (!probe(r, &e, &here)) {
         blob_release(e.owner);
         return false;
     }
-    kiln_image_desc desc = {.name = name_of(r, source), .encoded = e.data, .encoded_size = e.size,
+    kiln_image_desc desc = {.name = name, .place = place, .encoded = e.data, .encoded_size = e.size,
                             .release = e.owner ? blob_release : NULL, .release_user = e.owner};
     if (!kiln_scene_add_image(r->scene, &desc, id, r->report)) return false;
     r->images[image] = *id;

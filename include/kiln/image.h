@@ -15,7 +15,8 @@ typedef enum kiln_pixel_format { KILN_PIXELS_U8, KILN_PIXELS_U16, KILN_PIXELS_F3
  * straight (RGB under alpha 0 is kept). The scene copies the data, unless release is given: then the scene reads it
  * in place and calls release(release_user) once when it no longer needs it, also when adding the image fails. */
 typedef struct kiln_image_desc {
-    const char *name; /* for messages; may be NULL */
+    const char *name;  /* may be NULL */
+    const char *place; /* where it stands in the user's file, for messages: "car.glb: images[1]"; NULL: the name says */
     const void *encoded;
     size_t encoded_size;
     const void *pixels;

@@ -45,7 +45,7 @@ static bool pixels_of(const kiln_image_desc *desc, kiln_image *image, bool *owne
         *image = (kiln_image){desc->width, desc->height, desc->channels, desc->format, (void *)desc->pixels};
         return true;
     }
-    kiln_where where = where_root(desc->name && *desc->name ? desc->name : "image");
+    kiln_where where = where_root(scene_image_place(desc));
     return image_decode(desc->encoded, desc->encoded_size, 0, image, &where, report);
 }
 
