@@ -196,6 +196,7 @@ static json_t *describe(const job_run *r) {
 bool inspect(job_run *r, json_t **json) {
     bool done = run_phase(r, "import") && run_import(r) && run_phase(r, "frame") && run_camera(r) &&
                 run_phase(r, "subdivide") && run_subdivide(r) && run_phase(r, "light") && run_light(r) &&
+                run_phase(r, "images") && kiln_renderer_check_images(r->scene, r->options->threads, r->report) &&
                 run_check_strict(r);
     run_phase(r, NULL);
     *json = done ? describe(r) : NULL;

@@ -101,7 +101,7 @@ static const char *kind_name(kiln_image_kind kind) {
     return names[kind];
 }
 
-/* An image whose header cannot be read has a null format; the render will say what is wrong with it. */
+/* An image whose header cannot be read has a null format; were it used, there would be an error. */
 static json_t *image(const kiln_image_desc *from, uint64_t *decoded_bytes) {
     static const uint32_t bits[] = {[KILN_PIXELS_U8] = 8, [KILN_PIXELS_U16] = 16, [KILN_PIXELS_F32] = 32};
     kiln_image_info info = {KILN_IMAGE_UNKNOWN, from->width, from->height, from->channels, from->format};

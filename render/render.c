@@ -32,6 +32,10 @@ bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *
     return true;
 }
 
+bool kiln_renderer_check_images(const kiln_scene *scene, uint32_t threads, kiln_report *report) {
+    return world_check_images(scene, threads, report);
+}
+
 void kiln_renderer_destroy(kiln_renderer *r) {
     if (!r) return;
     world_destroy(r->world);

@@ -33,6 +33,10 @@ typedef struct kiln_renderer_options {
 KILN_API bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *, kiln_renderer **, kiln_report *);
 KILN_API void kiln_renderer_destroy(kiln_renderer *);
 
+/* Decodes the pictures that a renderer of a committed scene would, and keeps nothing: every one that would make
+ * kiln_renderer_create fail is an error. threads as above. */
+KILN_API bool kiln_renderer_check_images(const kiln_scene *scene, uint32_t threads, kiln_report *);
+
 typedef struct kiln_renderer_memory {
     size_t acceleration; /* bytes of the BVH */
     size_t scene;        /* triangles, materials, lights, environment */

@@ -105,6 +105,29 @@ bool images_decode(world_image *images, const kiln_scene *scene, uint32_t thread
     return !job.failed;
 }
 
+typedef struct check_job {
+    const world_image *images;
+    const kiln_scene *scene;
+    kiln_report *report;
+    atomic_bool failed;
+} check_job;
+
+static void check_one(void *context, size_t index, uint32_t thread) {
+    (void)thread;
+    check_job *job = context;
+    kiln_image pixels;
+    bool owned;
+    if (!job->images[index].wanted) return;
+    if (!pixels_of(&job->scene->images[index], &pixels, &owned, job->report)) atomic_store(&job->failed, true);
+    else if (owned) image_free(&pixels);
+}
+
+bool images_check(const world_image *images, const kiln_scene *scene, uint32_t threads, kiln_report *report) {
+    check_job job = {images, scene, report, false};
+    threads_for(threads, scene->image_count, check_one, &job);
+    return !job.failed;
+}
+
 void images_free(world_image *images, uint32_t count) {
     for (uint32_t i = 0; images && i < count; i++) {
         free(images[i].codes);

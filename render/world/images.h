@@ -18,6 +18,8 @@ typedef struct world_image {
 
 /* Decodes all images with wanted != 0, in parallel. images has one entry per image of the scene. */
 bool images_decode(world_image *images, const kiln_scene *, uint32_t threads, kiln_report *);
+/* The same for the errors alone: all of them, and no pixel is kept. */
+bool images_check(const world_image *images, const kiln_scene *, uint32_t threads, kiln_report *);
 void images_free(world_image *images, uint32_t count);
 
 /* A picture as linear RGB floats (3 a pixel) in the space of matrix (9, row-major); owned by the caller. */

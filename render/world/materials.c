@@ -242,3 +242,18 @@ bool world_build_materials(world *w, const kiln_scene *scene, const kiln_decodin
     free(used);
     return done;
 }
+
+bool world_check_images(const kiln_scene *scene, uint32_t threads, kiln_report *report) {
+    bool *used = mark_used(scene);
+    world_image *images = array_alloc(scene->image_count, sizeof *images);
+    builder b = {.scene = scene, .images = images};
+    bool done = (used && images) || report_no_memory(report, "checking pictures");
+    if (done) {
+        (void)want_images(&b, used);
+        if (scene->has_environment && scene->environment.image) images[scene->environment.image - 1].wanted = 1;
+        done = images_check(images, scene, threads, report);
+    }
+    free(used);
+    free(images);
+    return done;
+}

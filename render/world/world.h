@@ -118,6 +118,8 @@ void world_destroy(world *);
 /* The parts, in the order in which world_create calls them. */
 void world_choose_space(world *, const kiln_scene *);
 bool world_build_materials(world *, const kiln_scene *, const kiln_decoding *, uint32_t threads, kiln_report *);
+/* Decodes what world_build_materials and world_build_lights would, and keeps nothing. */
+bool world_check_images(const kiln_scene *, uint32_t threads, kiln_report *);
 bool world_build_geometry(world *, const kiln_scene *, uint32_t threads, kiln_report *);
 /* Appends a copy of a prototype whose coordinates are relative to center. */
 void world_place_instance(world *, const kiln_instance *, const kiln_mesh *, uint32_t prototype, dvec3 center);

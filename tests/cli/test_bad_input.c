@@ -35,7 +35,7 @@ static void write_gltf(const place *p, const char *the_nodes, const char *the_at
 
 /* Every file with inspect and render. */
 static void assert_invalid(const place *p, const char *file, const char *text) {
-    assert_refused(p, 3, text, "render", file, "--size", "8x8", "--spp", "1");
+    assert_refused(p, 3, text, "render", file, "--size", "8x8", "--spp", "1", "--quiet");
     assert_refused(p, 3, text, "inspect", file);
 }
 
@@ -86,20 +86,36 @@ static void positions_that_are_no_numbers(void **state) {
     assert_invalid(*state, "a.gltf", "not finite");
 }
 
-/* A picture that is missing or broken is found by the renderer, which is what needs it. */
+/* Missing, without pixels, cut off behind the header, damaged in the middle: the message tells file and place. */
 static void pictures_that_cannot_be_read(void **state) {
     const place *p = *state;
-    write_gltf(p, nodes, "{\"POSITION\":0,\"TEXCOORD_0\":1}", uri, "missing.png");
-    assert_refused(p, 3, "missing.png does not exist", "render", "a.gltf", "--size", "8x8", "--spp", "1");
-    write_gltf(p, nodes, "{\"POSITION\":0,\"TEXCOORD_0\":1}", uri,
+    static const char with_uv[] = "{\"POSITION\":0,\"TEXCOORD_0\":1}", grey_start[] = "data:image/png;base64,iVBORw0KGgoA"
+        "AAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNo";
+    static const unsigned char cut[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\b\0\0\0\0\x3a\x7e\x9b\x55\0\0\0\nIDATx";
+    write_gltf(p, nodes, with_uv, uri, "missing.png");
+    assert_invalid(p, "a.gltf", "missing.png does not exist");
+    write_gltf(p, nodes, with_uv, uri,
                "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAAAAAAECAIAAAAveKlTAAAACElEQVR4nAMAAAAAAUgGidIAAAAASUVORK5CYII=");
-    assert_refused(p, 3, "images[0]", "render", "a.gltf", "--size", "8x8", "--spp", "1");
+    assert_invalid(p, "a.gltf", "a.gltf: images[0]: ");
+    write_gltf(p, nodes, with_uv, uri, grey_start);
+    assert_invalid(p, "a.gltf", "a.gltf: images[0]: the PNG data ends too early");
+    write_gltf(p, nodes, with_uv, uri, "cut.png");
+    write_file(p, "cut.png", cut, sizeof cut - 1);
+    assert_invalid(p, "a.gltf", "a.gltf: images[0] (cut.png): the PNG data ends too early");
+    write_gltf(p, nodes, with_uv, uri, "damaged.png");
+    write_file(p, "damaged.png", "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\1\0\0\0\1\b\0\0\0\0\x3a\x7e\x9b\x55\0\0\0\nIDATxxxxxxxxxxxxxx", 55);
+    assert_invalid(p, "a.gltf", "a.gltf: images[0] (damaged.png): the PNG data is damaged");
 }
 
 static void surroundings_that_cannot_be_read(void **state) {
     const place *p = *state;
     assert_refused(p, 3, "hall.hdr: the file does not exist", "render", PAIR("unlit_a"), "--env", "hall.hdr");
     assert_refused(p, 3, "not a PNG", "render", PAIR("unlit_a"), "--env", PAIR("unlit_a"));
+    assert_refused(p, 3, "hall.hdr: the file does not exist", "inspect", PAIR("unlit_a"), "--env", "hall.hdr");
+    write_file(p, "cut.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80", 47);
+    assert_refused(p, 3, "cut.hdr: the Radiance HDR data ends too early", "render", PAIR("unlit_a"), "--env", "cut.hdr",
+                   "--quiet");
+    assert_refused(p, 3, "cut.hdr: the Radiance HDR data ends too early", "inspect", PAIR("unlit_a"), "--env", "cut.hdr");
     assert_refused(p, 3, "does not exist", "render", PAIR("unlit_a"), "--ocio", "c.ocio");
 }
 
