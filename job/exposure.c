@@ -39,43 +39,80 @@ static kiln_film_desc small_film(uint32_t width, uint32_t height) {
     double scale = longer > SIDE ? (double)SIDE / longer : 1;
     return (kiln_film_desc){.width = (uint32_t)fmax(round(width * scale), 1),
                             .height = (uint32_t)fmax(round(height * scale), 1),
-                            .aovs = 1u << KILN_AOV_ALPHA};
+                            .aovs = 1u << KILN_AOV_ALPHA | 1u << KILN_AOV_ALBEDO};
 }
 
-/* Luminances (Rec.709's weights: other working spaces are near enough) of what surfaces fill; of everything, where
- * there is no surface. */
-static bool measure(const kiln_film *film, double *stops, kiln_report *report) {
-    kiln_film_desc d = kiln_film_describe(film);
-    size_t count = (size_t)d.width * d.height, covered = 0;
-    float *rgb = array_alloc(count, 3 * sizeof *rgb), *alpha = array_alloc(count, sizeof *alpha),
-          *luminance = array_alloc(count, sizeof *luminance);
-    bool done = rgb && alpha && luminance;
-    if (done) {
-        kiln_film_beauty(film, rgb);
-        kiln_film_aov(film, KILN_AOV_ALPHA, alpha);
-        for (int all = 0; all < 2 && !covered; all++)
-            for (size_t i = 0; i < count; i++)
-                if (all || alpha[i] > 0.5f)
-                    luminance[covered++] = 0.2126f * rgb[3 * i] + 0.7152f * rgb[3 * i + 1] + 0.0722f * rgb[3 * i + 2];
-        *stops = exposure_of(luminance, covered);
-    }
-    free(rgb);
-    free(alpha);
-    free(luminance);
-    return done || report_no_memory(report, "choosing an exposure");
+/* What a quick render shows. */
+typedef struct glance {
+    size_t count;               /* pixels */
+    float *rgb, *alpha, *albedo; /* albedo is RGB too */
+} glance;
+
+static void glance_free(glance *g) {
+    free(g->rgb);
+    free(g->alpha);
+    free(g->albedo);
 }
 
-bool exposure_choose(const kiln_renderer *renderer, const kiln_render_options *options, uint32_t width, uint32_t height,
-                     double *stops, kiln_report *report) {
+static bool glance_take(glance *g, const kiln_renderer *renderer, const kiln_render_options *options, uint32_t width,
+                        uint32_t height, kiln_report *report) {
     kiln_render_options quick = *options;
     kiln_film_desc desc = small_film(width, height);
     kiln_film *film;
-    *stops = 0;
+    *g = (glance){.count = (size_t)desc.width * desc.height};
     quick.spp = SPP;
     quick.noise = quick.budget_seconds = 0;
     quick.progress = NULL;
     if (!kiln_film_create(&desc, &film, report)) return false;
-    bool done = kiln_render(renderer, &quick, film, NULL, report) && measure(film, stops, report);
+    bool done = kiln_render(renderer, &quick, film, NULL, report);
+    g->rgb = array_alloc(g->count, 3 * sizeof *g->rgb);
+    g->alpha = array_alloc(g->count, sizeof *g->alpha);
+    g->albedo = array_alloc(g->count, 3 * sizeof *g->albedo);
+    if (done && g->rgb && g->alpha && g->albedo) {
+        kiln_film_beauty(film, g->rgb);
+        kiln_film_aov(film, KILN_AOV_ALPHA, g->alpha);
+        kiln_film_aov(film, KILN_AOV_ALBEDO, g->albedo);
+    } else if (done) done = report_no_memory(report, "looking at the light");
     kiln_film_destroy(film);
+    return done;
+}
+
+/* Rec.709's weights: other working spaces are near enough. */
+static float luminance_of(const float rgb[3]) { return 0.2126f * rgb[0] + 0.7152f * rgb[1] + 0.0722f * rgb[2]; }
+
+static bool covered(const glance *g, size_t pixel) { return g->alpha[pixel] > 0.5f; }
+
+bool exposure_choose(const kiln_renderer *renderer, const kiln_render_options *options, uint32_t width, uint32_t height,
+                     double *stops, kiln_report *report) {
+    glance g;
+    size_t n = 0;
+    *stops = 0;
+    bool done = glance_take(&g, renderer, options, width, height, report);
+    float *luminance = done ? array_alloc(g.count, sizeof *luminance) : NULL;
+    if (done && !luminance) done = report_no_memory(report, "choosing an exposure");
+    for (int all = 0; done && all < 2 && !n; all++) /* what surfaces fill; everything, where there is no surface */
+        for (size_t i = 0; i < g.count; i++)
+            if (all || covered(&g, i)) luminance[n++] = luminance_of(g.rgb + 3 * i);
+    if (done) *stops = exposure_of(luminance, n);
+    free(luminance);
+    glance_free(&g);
+    return done;
+}
+
+/* A surface counts as lit when it shows at least a twentieth of its albedo, 4.3 stops below what the studio makes of
+ * it; a picture, when half of its surfaces are. */
+bool exposure_is_lit(const kiln_renderer *renderer, const kiln_render_options *options, uint32_t width, uint32_t height,
+                     bool *lit, kiln_report *report) {
+    const float least = 0.05f;
+    glance g;
+    size_t surfaces = 0, bright = 0;
+    bool done = glance_take(&g, renderer, options, width, height, report);
+    for (size_t i = 0; done && i < g.count; i++) {
+        if (!covered(&g, i)) continue;
+        surfaces++;
+        bright += luminance_of(g.rgb + 3 * i) > least * luminance_of(g.albedo + 3 * i);
+    }
+    *lit = surfaces && 2 * bright >= surfaces;
+    glance_free(&g);
     return done;
 }

@@ -10,7 +10,7 @@
 #include "scene/scene.h"
 
 /* Emission up to 1 is how glTF draws things that glow; only what was made brighter than that (by
- * KHR_materials_emissive_strength, or in a scene made by a program) is meant to light others. */
+ * KHR_materials_emissive_strength, or in a scene made by a program) may be meant to light others. */
 static bool is_lamp(const kiln_material *m) {
     bool bright = m->emission.value[0] > 1 || m->emission.value[1] > 1 || m->emission.value[2] > 1;
     return bright && !(m->layers & KILN_LAYER_UNLIT);
@@ -41,8 +41,9 @@ static bool any_punctual(const kiln_scene *scene) {
 
 job_lighting lighting_choose(const job_options *o, const kiln_scene *scene) {
     job_lighting l = {.punctual = any_punctual(scene), .emissive = any_lamp(scene)};
-    bool own = l.punctual || l.emissive || scene->has_environment;
-    if (!o->env) l.kind = own ? JOB_LIGHT_SCENE : JOB_LIGHT_STUDIO;
+    bool certain = l.punctual || scene->has_environment;
+    l.doubtful = !o->env && !certain && l.emissive;
+    if (!o->env) l.kind = certain || l.doubtful ? JOB_LIGHT_SCENE : JOB_LIGHT_STUDIO;
     else if (strcmp(o->env, "none") == 0) l.kind = JOB_LIGHT_NONE;
     else l.kind = strcmp(o->env, "studio") == 0 ? JOB_LIGHT_STUDIO : JOB_LIGHT_FILE;
     return l;
@@ -53,7 +54,7 @@ const char *lighting_describe(const job_lighting *l, const job_options *o) {
     switch (l->kind) {
     case JOB_LIGHT_SCENE: return "the scene's own";
     case JOB_LIGHT_FILE: return path_base(o->env);
-    case JOB_LIGHT_STUDIO: return "studio";
+    case JOB_LIGHT_STUDIO: return l->dim ? "studio (the scene's emitters alone would leave it dark)" : "studio";
     case JOB_LIGHT_NONE: return own ? "the scene's own, no surroundings" : "none";
     }
     return "";

@@ -6,6 +6,7 @@
 #include "job/machine.h"
 #include "job/metadata.h"
 #include "job/run.h"
+#include "scene/scene.h"
 
 static bool needs_alpha(const job_run *r) { return r->options->background.kind != KILN_BACKGROUND_ENVIRONMENT; }
 
@@ -35,6 +36,7 @@ bool run_film(job_run *r) {
 }
 
 bool run_build(job_run *r) {
+    if (r->renderer) return true;
     kiln_renderer_options options = {r->options->threads, r->options->embree_config, &r->decoding};
     if (!kiln_renderer_create(r->scene, &options, &r->renderer, r->report)) return false;
     r->memory = kiln_renderer_describe_memory(r->renderer);
@@ -62,6 +64,23 @@ static kiln_render_options render_options(const job_run *r) {
                                  .cancel = r->events->cancel,
                                  .progress = r->events->progress,
                                  .progress_user = r->events->user};
+}
+
+bool run_try_emitters(job_run *r) {
+    bool lit;
+    kiln_render_options options = render_options(r);
+    if (!run_build(r) ||
+        !exposure_is_lit(r->renderer, &options, r->view.width, r->view.height, &lit, r->report))
+        return false;
+    if (lit) return true;
+    r->lighting.dim = true;
+    kiln_renderer_destroy(r->renderer);
+    r->renderer = NULL;
+    r->lighting.kind = JOB_LIGHT_STUDIO;
+    scene_set_open(r->scene, true);
+    bool done = lighting_apply(&r->lighting, r->options, &r->view.camera, r->scene, r->report);
+    scene_set_open(r->scene, false);
+    return done;
 }
 
 /* Only what is shown, or judged by its noise, needs an exposure. */

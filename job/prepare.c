@@ -95,7 +95,7 @@ bool run_light(job_run *r) {
     r->asset_images = r->scene->image_count;
     r->lighting = lighting_choose(r->options, r->scene);
     if (!lighting_apply(&r->lighting, r->options, &r->view.camera, r->scene, r->report) ||
-        !kiln_scene_commit(r->scene, r->report))
+        !kiln_scene_commit(r->scene, r->report) || (r->lighting.doubtful && !run_try_emitters(r)))
         return false;
     kiln_scene_counts c = kiln_scene_count(r->scene);
     run_log(r, "%s: %u instance%s of %u mesh%s, %llu triangles; camera %s, light %s", path_base(r->source), c.instances,

@@ -66,11 +66,13 @@ bool run_import(job_run *); /* source; not for a scene that is lent */
 bool run_camera(job_run *);
 bool run_outputs(job_run *); /* names, and whether they can be written */
 bool run_subdivide(job_run *);
-bool run_light(job_run *);   /* and commits the scene */
+bool run_light(job_run *);   /* and commits the scene; where emitters are the only light, run_try_emitters */
 
 /* line.c */
 bool run_film(job_run *);
-bool run_build(job_run *);
+bool run_build(job_run *); /* unless run_try_emitters did */
+/* Looks by a quick render whether the emitters of a committed scene light what is seen; if not, puts up the studio. */
+bool run_try_emitters(job_run *);
 bool run_expose(job_run *);
 bool run_render(job_run *);
 /* Writes every output, whatever happened to the others. */

@@ -63,6 +63,10 @@ static inline const kiln_mesh *scene_mesh(const kiln_scene *s, kiln_id id) { ret
 static inline const kiln_instance *scene_instance(const kiln_scene *s, kiln_id id) { return &s->instances[id - 1]; }
 static inline const kiln_light *scene_light(const kiln_scene *s, kiln_id id) { return &s->lights[id - 1]; }
 
+/* Lets the light of a committed scene that nobody reads be changed; then close it again. Surfaces must stay as they
+ * are: what the commit found out about them is kept. */
+static inline void scene_set_open(kiln_scene *s, bool open) { s->committed = !open; }
+
 /* What stands in front of every place in the messages of the adders: the file that is being read, say. The chain must
  * live until it is replaced; NULL: nothing. */
 static inline void scene_locate(kiln_scene *s, const kiln_where *where) { s->where = where; }

@@ -246,6 +246,30 @@ static void scenes_of_a_program_are_rendered(void **state) {
     assert_int_equal(kiln_scene_count(f->scene).instances, 1);
 }
 
+/* Tail lights do not light a car; a lamp above a table lights it. */
+static void emitters_replace_the_studio_where_they_light_what_is_seen(void **state) {
+    fixture *f = *state;
+    char exr[256];
+    const struct {
+        float low[3], high[3];
+        const char *light;
+    } rows[] = {{{0.9f, 0.4f, 1}, {1, 0.5f, 1.1f}, "studio (the scene's emitters alone would leave it dark)"},
+                {{-4, 4, -4}, {4, 4.1f, 8}, "the scene's own"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        kiln_scene_destroy(f->scene);
+        f->scene = kiln_scene_create();
+        add_box(f, (float[]){-1, -1, -1}, (float[]){1, 1, 1}, add_material(f, 0.5f, 0));
+        add_box(f, rows[i].low, rows[i].high, add_material(f, 0.5f, 1.5f));
+        kiln_job *job = job_of(f, (const char *const[]){"size", "64x64", "spp", "16", "orbit", "20,-20", "subdivide", "off",
+                                                        "output", path_in(f, "b.exr", exr), NULL});
+        assert_done(f, kiln_job_render_scene(job, f->scene, "by hand", f->report));
+        json_t *stats = stats_of(job);
+        assert_string_equal(json_string_value(find(stats, "scene.light")), rows[i].light);
+        json_decref(stats);
+        kiln_job_destroy(job);
+    }
+}
+
 static void assets_are_inspected(void **state) {
     fixture *f = *state;
     kiln_job *job = kiln_job_create();
@@ -309,6 +333,7 @@ int main(void) {
                                        JOB_TEST(missed_goals_are_told),
                                        JOB_TEST(exposures_are_chosen_where_lights_have_units),
                                        JOB_TEST(scenes_of_a_program_are_rendered),
+                                       JOB_TEST(emitters_replace_the_studio_where_they_light_what_is_seen),
                                        JOB_TEST(assets_are_inspected),
                                        JOB_TEST(the_machine_and_its_libraries_are_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -37,6 +37,17 @@ static void only_bright_emission_counts(void **state) {
     assert_int_equal(kind(f), JOB_LIGHT_STUDIO);
     add_box(f, low, high, add_material(f, 0.5f, 1.01f));
     assert_int_equal(kind(f), JOB_LIGHT_SCENE);
+    assert_true(lighting_choose(&f->options, f->scene).doubtful);
+    give(f, "env", "none");
+    assert_false(lighting_choose(&f->options, f->scene).doubtful);
+}
+
+static void certain_lights_need_no_trial(void **state) {
+    fixture *f = *state;
+    add_box(f, low, high, add_material(f, 0.5f, 10));
+    assert_true(lighting_choose(&f->options, f->scene).doubtful);
+    add_light(f, 3);
+    assert_false(lighting_choose(&f->options, f->scene).doubtful);
 }
 
 static void unlit_surfaces_light_nothing(void **state) {
@@ -124,6 +135,6 @@ int main(void) {
         JOB_TEST(unlit_surfaces_light_nothing),        JOB_TEST(options_go_first),
         JOB_TEST(the_studio_is_turned_and_dimmed),     JOB_TEST(surroundings_of_the_scene_are_turned_further),
         JOB_TEST(none_takes_the_surroundings_away),    JOB_TEST(pictures_are_read),
-        JOB_TEST(what_is_no_picture_is_refused)};
+        JOB_TEST(what_is_no_picture_is_refused),       JOB_TEST(certain_lights_need_no_trial)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
