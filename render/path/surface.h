@@ -25,10 +25,18 @@ KERNEL triangle_hit triangle_intersect(vec3 o, vec3 d, vec3 p0, vec3 e1, vec3 e2
 /* How far from the surface a ray must start so that it cannot meet it again: a bound on the rounding errors of a
  * barycentric point and of Embree's test of the ray against the triangle, along the geometric normal n.
  * 2⁻²⁰: sixteen roundings (Wächter and Binder 2019 and pbrt-v4, 6.8.5, count about seven each). Coordinates that play no
- * part, because the normal has no component along them, do not add to it. */
+ * part, because the normal has no component along them, do not add to it.
+ *
+ * The plane of a needle leans by what the products of its normal lose to cancellation: at the far end it is off by that
+ * times the length, over the area. More than its own height is not asked for, or a ray would leave from somewhere else. */
 KERNEL float surface_reach(vec3 n, vec3 p0, vec3 e1, vec3 e2, float magnitude) {
-    vec3 sum = v3_add(v3_abs(p0), v3_scale(v3_add(v3_abs(e1), v3_abs(e2)), 2.0f));
-    return 0x1p-20f * (v3_dot(v3_abs(n), sum) + 4.0f * magnitude);
+    vec3 a = v3_abs(e1), b = v3_abs(e2), edges = v3_add(a, b);
+    vec3 sum = v3_add(v3_abs(p0), v3_scale(edges, 2.0f));
+    float reach = 0x1p-20f * (v3_dot(v3_abs(n), sum) + 4.0f * magnitude);
+    vec3 products = v3(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x);
+    float twice = fabsf(v3_dot(v3_cross(e1, e2), n)), length2 = fm_max(v3_dot(edges, edges), 1e-37f);
+    float lean = 0x1p-22f * v3_dot(products, edges) / fm_max(twice, 1e-37f), height = twice / sqrtf(length2);
+    return fm_max(reach, lean < height ? lean : height);
 }
 
 /* The interpolated normal, of unit length and on the side of the geometric one; that one itself if there is none. */
