@@ -50,13 +50,13 @@ rays rays_random(uint32_t count, float reach, uint32_t seed) {
     return r;
 }
 
-void add_slivers(scene_builder *b, stream *s, uint32_t count) {
+void add_slivers(scene_builder *b, stream *s, uint32_t count, float width) {
     float *p = calloc(9 * count, sizeof *p);
     uint32_t *faces = calloc(3 * count, sizeof *faces);
     for (uint32_t i = 0; i < count; i++) {
         vec3 a = stream_point(s, 1), c = stream_point(s, 1);
         v3_store(p + 9 * i, a), v3_store(p + 9 * i + 3, c);
-        v3_store(p + 9 * i + 6, v3_madd(v3_lerp(a, c, 0.5f), 1e-5f, stream_direction(s)));
+        v3_store(p + 9 * i + 6, v3_madd(v3_lerp(a, c, 0.5f), width, stream_direction(s)));
         for (uint32_t k = 0; k < 3; k++) faces[3 * i + k] = 3 * i + k;
     }
     kiln_mesh_desc desc = {.name = "slivers", .vertex_count = 3 * count, .positions = p, .face_count = count,

@@ -29,8 +29,8 @@ void rays_visible(const world *, rays *);
 
 vec3 stream_point(stream *, float reach); /* in that cube */
 
-/* Needles of a hundred-thousandth of their length, in all directions. */
-void add_slivers(scene_builder *, stream *, uint32_t count);
+/* Triangles about 1 long and so wide, in all directions. */
+void add_slivers(scene_builder *, stream *, uint32_t count, float width);
 /* A grid of waves, 2 n² triangles between −1 and 1, that nothing shows yet. */
 kiln_id add_waves(scene_builder *, kiln_id material, uint32_t n);
 /* So many copies of a mesh about the origin: turned, squeezed, every other one mirrored. */

@@ -18,7 +18,7 @@ static int set_up(void **state) {
     scene_builder b = builder_make();
     stream s = {1, 0};
     add_copies(&b, add_waves(&b, 0, WAVES), COPIES, &s);
-    add_slivers(&b, &s, 500);
+    add_slivers(&b, &s, 500, 1e-5f);
     add_sphere(&b, 0, (float[]){0.4f, 0.2f, -0.3f}, 0.3f, 32, 0);
     add_box(&b, 0, (float[]){-0.8f, -0.5f, -0.2f}, (float[]){-0.5f, -0.2f, 0.6f});
     world *w = build_world(&b);
@@ -139,7 +139,7 @@ static void nothing_nearer_is_missed(void **state) {
     (void)state;
     scene_builder b = builder_make();
     stream s = {5, 0};
-    add_slivers(&b, &s, 100);
+    add_slivers(&b, &s, 100, 1e-5f);
     add_sphere(&b, 0, (float[]){0.1f, 0.2f, 0.3f}, 0.5f, 12, 0);
     add_instance(&b, add_waves(&b, 0, 10), NULL);
     world *w = build_world(&b);
