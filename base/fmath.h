@@ -34,6 +34,9 @@ static inline float fm_lerp(float a, float b, float t) { return (1.0f - t) * a +
 /* Exact for every argument; keeps −0. */
 static inline float fm_floor(float x) { return floorf(x); }
 
+/* The next larger float of x in [0, ∞]; ∞ and NaN stay. */
+static inline float fm_next_up(float x) { return x < INFINITY ? fm_from_bits((fm_bits(x) & 0x7fffffffu) + 1u) : x; }
+
 /* 2^k for −126 ≤ k ≤ 127. */
 static inline float fm_power_of_two(int32_t k) { return fm_from_bits((uint32_t)(k + 127) << 23); }
 

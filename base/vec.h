@@ -30,6 +30,11 @@ static inline float v3_max(vec3 a) {
     float m = a.x > a.y ? a.x : a.y;
     return m > a.z ? m : a.z;
 }
+/* m: 3 × 3, rows. */
+static inline vec3 v3_transform(const float m[9], vec3 v) {
+    return (vec3){m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
+                  m[6] * v.x + m[7] * v.y + m[8] * v.z};
+}
 static inline vec3 v3_lerp(vec3 a, vec3 b, float t) { return v3_madd(a, t, v3_sub(b, a)); }
 static inline vec3 v3_select(int condition, vec3 a, vec3 b) {
     return (vec3){condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z};

@@ -12,19 +12,12 @@ static void prefetch(const world *w, const path_hit *h, uint32_t i, uint32_t n) 
 
 /* Corners of a prototype's triangle become render space's. */
 static void place(const world_instance *copy, path_scratch *x, uint32_t i) {
-    const float *m = copy->m, *c = copy->normal;
-#define POINT(p) \
-    { vec3 q = {x->p##x[i], x->p##y[i], x->p##z[i]}; \
-      x->p##x[i] = m[0] * q.x + m[1] * q.y + m[2] * q.z + m[3]; \
-      x->p##y[i] = m[4] * q.x + m[5] * q.y + m[6] * q.z + m[7]; \
-      x->p##z[i] = m[8] * q.x + m[9] * q.y + m[10] * q.z + m[11]; }
-#define NORMAL(p) \
-    { vec3 q = {x->p##x[i], x->p##y[i], x->p##z[i]}; \
-      x->p##x[i] = c[0] * q.x + c[1] * q.y + c[2] * q.z; \
-      x->p##y[i] = c[3] * q.x + c[4] * q.y + c[5] * q.z; \
-      x->p##z[i] = c[6] * q.x + c[7] * q.y + c[8] * q.z; }
-    POINT(p0) POINT(p1) POINT(p2)
-    NORMAL(n0) NORMAL(n1) NORMAL(n2)
+#define PLACE(p, as) \
+    { vec3 q = world_instance_##as(copy, v3(x->p##x[i], x->p##y[i], x->p##z[i])); \
+      x->p##x[i] = q.x, x->p##y[i] = q.y, x->p##z[i] = q.z; }
+    PLACE(p0, point) PLACE(p1, point) PLACE(p2, point)
+    PLACE(n0, normal) PLACE(n1, normal) PLACE(n2, normal)
+#undef PLACE
 }
 
 void STAGE(fetch)(const path_context *c, batch *b) {

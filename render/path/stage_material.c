@@ -57,11 +57,9 @@ static void load_normal_map(const world *w, const path_hit *h, path_scratch *x, 
     float b1 = h->u[i], b2 = h->v[i], b0 = 1.0f - b1 - b2, t[3];
     for (int k = 0; k < 3; k++) t[k] = b0 * a[k] + b1 * p[k] + b2 * q[k];
     const world_instance *copy = &w->instances[h->instance[i]];
-    const float *r = copy->m;
-    bool placed = h->instance[i] != 0;
-    x->tan_x[i] = placed ? r[0] * t[0] + r[1] * t[1] + r[2] * t[2] : t[0];
-    x->tan_y[i] = placed ? r[4] * t[0] + r[5] * t[1] + r[6] * t[2] : t[1];
-    x->tan_z[i] = placed ? r[8] * t[0] + r[9] * t[1] + r[10] * t[2] : t[2];
+    vec3 tangent = v3_load(t);
+    if (h->instance[i]) tangent = world_instance_vector(copy, tangent);
+    x->tan_x[i] = tangent.x, x->tan_y[i] = tangent.y, x->tan_z[i] = tangent.z;
     x->tan_w[i] = a[3] * copy->side;
 }
 

@@ -12,11 +12,7 @@ static bool is_culled(const world *w, const path_state *s, const path_hit *h, ui
     vec3 p0 = v3_load(w->vertices[v[0]].p);
     vec3 e1 = v3_sub(v3_load(w->vertices[v[1]].p), p0), e2 = v3_sub(v3_load(w->vertices[v[2]].p), p0);
     vec3 n = v3_cross(e1, e2), d = v3(s->dx[i], s->dy[i], s->dz[i]);
-    if (h->instance[i]) {
-        const float *m3 = copy->normal;
-        n = v3(m3[0] * n.x + m3[1] * n.y + m3[2] * n.z, m3[3] * n.x + m3[4] * n.y + m3[5] * n.z,
-               m3[6] * n.x + m3[7] * n.y + m3[8] * n.z);
-    }
+    if (h->instance[i]) n = world_instance_normal(copy, n);
     return v3_dot(n, d) > 0.0f;
 }
 
@@ -31,7 +27,7 @@ static void look_through(const path_context *c, batch *b, ray_lanes *rays) {
         for (uint32_t k = 0; k < count; k++) {
             uint32_t i = layer ? x->list[k] : k;
             if (!is_culled(c->world, s, h, i)) continue;
-            x->tnear[i] = nextafterf(h->t[i], INFINITY);
+            x->tnear[i] = fm_next_up(h->t[i]);
             x->list[kept++] = i;
         }
         count = kept;

@@ -56,12 +56,6 @@ static bool count_triangles(build *b, uint64_t *total) {
     return true;
 }
 
-static vec3 transformed(const world_instance *i, const float *p) {
-    const float *m = i->m;
-    return v3(m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
-              m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]);
-}
-
 /* Mean of the emission texture over the triangle, on a regular grid about as fine as its texels. */
 static float mean_emission(const world *w, const light *l) {
     if (!l->texture) return 1.0f;
@@ -90,7 +84,7 @@ static light triangle_light(const world *w, const world_instance *copy, uint32_t
     light l = {.kind = LIGHT_TRIANGLE, .radiance = v3_load(m->emission), .texture = m->texture[SLOT_EMISSION],
                .two_sided = m->flags & MATERIAL_DOUBLE_SIDED || m->kind == KIND_TRANSMISSIVE ? 1.0f : 0.0f};
     for (int k = 0; k < 3; k++) {
-        p[k] = transformed(copy, w->vertices[v[k]].p);
+        p[k] = world_instance_point(copy, v3_load(w->vertices[v[k]].p));
         reach = fmaxf(reach, v3_max(v3_abs(p[k])));
         const float *uv = w->vertices[v[k]].uv;
         if (l.texture && w->textures[l.texture - 1].uv_set > 0)

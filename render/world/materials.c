@@ -159,7 +159,7 @@ static void set_constants(const builder *b, world_material *m, const kiln_materi
     m->f0 = from->ior > 0 ? root * root : 1.0f;
     m->flags = (from->double_sided ? MATERIAL_DOUBLE_SIDED : 0u) | (unlit ? MATERIAL_UNLIT : 0u) |
                (from->alpha_mode == KILN_ALPHA_MASK ? MATERIAL_MASK : 0u) |
-               (from->alpha_mode == KILN_ALPHA_BLEND ? MATERIAL_BLEND : 0u) | (is_solid(from) ? MATERIAL_SOLID : 0u);
+               (from->alpha_mode == KILN_ALPHA_BLEND ? MATERIAL_BLEND : 0u);
     if (unlit) m->metallic = 0.0f;
     m->kind = m->transmission > 0 ? KIND_TRANSMISSIVE : m->metallic > 0 || m->specular > 0 ? KIND_GLOSSY : KIND_DIFFUSE;
 }

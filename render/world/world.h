@@ -26,7 +26,7 @@ enum { WORLD_UV_SETS = 4 }; /* that textures of one scene may use */
 /* A copy of some triangles. Copy 0 is everything that was baked into render space, under the identity. */
 typedef struct world_instance {
     float m[12];               /* rows: p' = m p + translation */
-    float normal[9];           /* rows: cofactors, for normals */
+    float normal[9];           /* rows: cofactors, divided by the longest, for normals */
     uint32_t triangle_base[2]; /* of Embree's geometries 0, opaque, and 1, with coverage */
     uint32_t prototype;        /* into world.prototypes; copy 0: none */
     uint32_t light_base;       /* of the first emitting triangle of the prototype */
@@ -46,8 +46,7 @@ enum {
     MATERIAL_DOUBLE_SIDED = 1 << 0,
     MATERIAL_MASK = 1 << 1,
     MATERIAL_BLEND = 1 << 2,
-    MATERIAL_UNLIT = 1 << 3,
-    MATERIAL_SOLID = 1 << 4 /* the surface bounds a medium */
+    MATERIAL_UNLIT = 1 << 3
 };
 
 /* What the shading of a material can need: the kernels' instances. */
@@ -128,5 +127,21 @@ bool world_build_lights(world *, const kiln_scene *, const kiln_decoding *, uint
 /* Scene to render space. */
 static inline dvec3 world_point(const world *w, dvec3 p) { return d3_scale(d3_sub(p, w->center), w->scale); }
 static inline vec3 to_float(dvec3 v) { return v3((float)v.x, (float)v.y, (float)v.z); }
+
+/* A rotation as turns in [−½, ½]: a float has digits for many turns or for a fine angle, not for both. */
+static inline float to_turns(double radians) { return (float)remainder(radians / (2 * M_PI), 1); }
+
+/* A copy's coordinates in render space. Vectors and normals come out with other lengths than they had. */
+static inline vec3 world_instance_point(const world_instance *i, vec3 p) {
+    const float *m = i->m;
+    return v3(m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3], m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+              m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]);
+}
+static inline vec3 world_instance_vector(const world_instance *i, vec3 v) {
+    const float *m = i->m;
+    return v3(m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
+              m[8] * v.x + m[9] * v.y + m[10] * v.z);
+}
+static inline vec3 world_instance_normal(const world_instance *i, vec3 n) { return v3_transform(i->normal, n); }
 
 #endif

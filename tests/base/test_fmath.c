@@ -260,6 +260,13 @@ static void selections_treat_nan_as_stated(void **state) {
 #define LOOP_COUNT 1021 /* not a multiple of any vector's length */
 
 /* Vectorised or not, the bits are the same: the compiler may not contract, reassociate or approximate. */
+static void next_up_is_cs(void **state) {
+    (void)state;
+    const float places[] = {0.0f, -0.0f, 0x1p-149f, 0x1.fffffcp-127f, 0x1p-126f, 0x1.fffffep-1f, 1, 0x1.fffffep127f, INFINITY};
+    for (int i = 0; i < COUNT(places); i++) assert_true(fm_next_up(places[i]) == nextafterf(places[i], INFINITY));
+    assert_true(isnan(fm_next_up(QUIET_NAN)));
+}
+
 static void loops_equal_single_calls(void **state) {
     (void)state;
     static float x[LOOP_COUNT], y[LOOP_COUNT], result[LOOP_COUNT];
@@ -284,7 +291,8 @@ int main(void) {
         cmocka_unit_test(errors_are_as_stated),       cmocka_unit_test(pow_is_within_its_error),
         cmocka_unit_test(atan2_is_within_its_error),  cmocka_unit_test(edges_are_as_stated),
         cmocka_unit_test(pow_edges_are_as_stated),    cmocka_unit_test(atan2_edges_are_cs),
-        cmocka_unit_test(selections_treat_nan_as_stated), cmocka_unit_test(loops_equal_single_calls),
+        cmocka_unit_test(selections_treat_nan_as_stated), cmocka_unit_test(next_up_is_cs),
+        cmocka_unit_test(loops_equal_single_calls),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,6 +24,7 @@ static void arithmetic(void **state) {
     assert_true(equal(v3_splat(7), v3(7, 7, 7)));
     assert_true(v3_max(a) == 3 && v3_max(v3(9, 2, 3)) == 9 && v3_max(v3(1, 8, 3)) == 8);
     assert_true(equal(v3_select(1, a, b), a) && equal(v3_select(0, a, b), b));
+    assert_true(equal(v3_transform((float[]){0, 1, 0, 0, 0, 2, 3, 0, 1}, a), v3(2, 6, 6)));
     float memory[3];
     v3_store(memory, b);
     assert_true(equal(v3_load(memory), b));

@@ -39,15 +39,6 @@ static path start(const path_context *c, path_sample s) {
     return p;
 }
 
-static vec3 place_point(const float *m, const float *p) {
-    return v3(m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
-              m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]);
-}
-static vec3 place_normal(const float *m, const float *p) {
-    return v3(m[0] * p[0] + m[1] * p[1] + m[2] * p[2], m[3] * p[0] + m[4] * p[1] + m[5] * p[2],
-              m[6] * p[0] + m[7] * p[1] + m[8] * p[2]);
-}
-
 /* Closest hit, with single-sided surfaces that the camera sees from behind looked through. */
 static bool find(const path_context *c, path *p, hit *h) {
     const world *w = c->world;
@@ -66,17 +57,17 @@ static bool find(const path_context *c, path *p, hit *h) {
         surface_triangle tri = {.uv0 = {a->uv[0], a->uv[1]}, .uv1 = {b->uv[0], b->uv[1]}, .uv2 = {d->uv[0], d->uv[1]},
                                 .side = copy->side, .magnitude = copy->magnitude, .embree = {u, v, t}};
         bool placed = h->instance != 0;
-        tri.p0 = placed ? place_point(copy->m, a->p) : v3_load(a->p);
-        tri.p1 = placed ? place_point(copy->m, b->p) : v3_load(b->p);
-        tri.p2 = placed ? place_point(copy->m, d->p) : v3_load(d->p);
-        tri.n0 = placed ? place_normal(copy->normal, a->n) : v3_load(a->n);
-        tri.n1 = placed ? place_normal(copy->normal, b->n) : v3_load(b->n);
-        tri.n2 = placed ? place_normal(copy->normal, d->n) : v3_load(d->n);
+        tri.p0 = placed ? world_instance_point(copy, v3_load(a->p)) : v3_load(a->p);
+        tri.p1 = placed ? world_instance_point(copy, v3_load(b->p)) : v3_load(b->p);
+        tri.p2 = placed ? world_instance_point(copy, v3_load(d->p)) : v3_load(d->p);
+        tri.n0 = placed ? world_instance_normal(copy, v3_load(a->n)) : v3_load(a->n);
+        tri.n1 = placed ? world_instance_normal(copy, v3_load(b->n)) : v3_load(b->n);
+        tri.n2 = placed ? world_instance_normal(copy, v3_load(d->n)) : v3_load(d->n);
         h->p = surface_at(p->origin, p->direction, &tri);
         h->material = &w->materials[w->triangle_material[h->triangle]];
         bool one_sided = !(h->material->flags & MATERIAL_DOUBLE_SIDED) && h->material->kind != KIND_TRANSMISSIVE;
         if (p->depth || !one_sided || h->p.front > 0.5f) return true;
-        near = nextafterf(t, INFINITY);
+        near = fm_next_up(t);
     }
 }
 
@@ -158,11 +149,7 @@ static surface look_up(const path_context *c, const hit *h, vec3 *emission, vec3
         mix4(w, h, w->tangents, tangent);
         const world_instance *copy = &w->instances[h->instance];
         vec3 direction = v3_load(tangent);
-        const float *r = copy->m;
-        if (h->instance)
-            direction = v3(r[0] * tangent[0] + r[1] * tangent[1] + r[2] * tangent[2],
-                           r[4] * tangent[0] + r[5] * tangent[1] + r[6] * tangent[2],
-                           r[8] * tangent[0] + r[9] * tangent[1] + r[10] * tangent[2]);
+        if (h->instance) direction = world_instance_vector(copy, direction);
         float sign = w->tangents[4 * (size_t)w->triangles[3 * (size_t)h->triangle] + 3] * copy->side;
         vec3 map = {(2.0f * x.r - 1.0f) * m->normal_scale, (2.0f * x.g - 1.0f) * m->normal_scale, 2.0f * x.b - 1.0f};
         *normal = surface_map(*normal, direction, sign, map, h->p.front);
