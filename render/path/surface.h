@@ -39,10 +39,11 @@ KERNEL float surface_reach(vec3 n, vec3 p0, vec3 e1, vec3 e2, float magnitude) {
     return fm_max(reach, lean < height ? lean : height);
 }
 
-/* The interpolated normal, of unit length and on the side of the geometric one; that one itself if there is none. */
-KERNEL vec3 surface_normal(vec3 n, vec3 geometric) {
+/* The interpolated normal, of unit length and on the side of the geometric one; that one itself if there is none, or if
+ * the corners' normals, whose squared lengths sum to corners2, cancel. A copy that is stretched makes normals short. */
+KERNEL vec3 surface_normal(vec3 n, float corners2, vec3 geometric) {
     float length2 = v3_dot(n, n), side = v3_dot(n, geometric) < 0.0f ? -1.0f : 1.0f;
-    int smooth = length2 > 1e-12f; /* of what were unit vectors */
+    int smooth = length2 > 1e-12f * corners2;
     return v3_select(smooth, v3_scale(n, side / sqrtf(smooth ? length2 : 1.0f)), geometric);
 }
 
@@ -73,10 +74,11 @@ KERNEL surface_point surface_at(vec3 o, vec3 d, const surface_triangle *s) {
     float front = v3_dot(n, d) < 0.0f ? 1.0f : 0.0f;
     n = v3_scale(n, front > 0.5f ? 1.0f : -1.0f);
     vec3 smooth = v3_madd(v3_madd(v3_scale(s->n0, b0), h.u, s->n1), h.v, s->n2);
+    float corners2 = v3_dot(s->n0, s->n0) + v3_dot(s->n1, s->n1) + v3_dot(s->n2, s->n2);
     return (surface_point){.hit = h,
                            .position = v3_madd(v3_madd(s->p0, h.u, e1), h.v, e2),
                            .geometric = n,
-                           .shading = surface_normal(smooth, n),
+                           .shading = surface_normal(smooth, corners2, n),
                            .reach = surface_reach(n, s->p0, e1, e2, s->magnitude),
                            .area = 0.5f * twice,
                            .front = front,
@@ -92,7 +94,7 @@ KERNEL vec3 surface_map(vec3 normal, vec3 tangent, float w, vec3 map, float fron
     int mapped = (map.x != 0.0f) | (map.y != 0.0f);
     vec3 t = v3_madd(tangent, -v3_dot(tangent, normal), normal);
     float length2 = v3_dot(t, t);
-    int usable = mapped & (length2 > 1e-12f); /* of what were unit vectors */
+    int usable = mapped & (length2 > 1e-12f * v3_dot(tangent, tangent));
     t = v3_scale(t, 1.0f / sqrtf(usable ? length2 : 1.0f));
     vec3 bitangent = v3_scale(v3_cross(normal, t), w * side);
     vec3 bent = v3_madd(v3_madd(v3_scale(normal, map.z), map.x * side, t), map.y * side, bitangent);

@@ -2,6 +2,7 @@
  *
  * Triangles lie in this order: baked opaque, baked with coverage, then for each prototype the same two. Sizes are
  * summed first, so that instances can be written in parallel and the result does not depend on threads. */
+#include <float.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 
@@ -15,15 +16,26 @@ enum { BAKE_TRIANGLES = 1 << 20 };
 /* Where an instance (baked) or a prototype is written. */
 typedef struct placement {
     const shape *shape;
+    bool baked;
     mat4 to_target; /* object to render space, or to the prototype's own */
+    mat4 normals;   /* normal_matrix of it */
+    double tangents; /* what tangents are multiplied by */
     uint32_t vertex_first, opaque_first, coverage_first;
     bool mirrored;
 } placement;
+
+/* How an instance comes into the world. */
+typedef enum presence {
+    ABSENT, /* it has no area: a node that is hidden by a scale of 0 */
+    ALONE,  /* flat, or nearly: it is baked whatever becomes of the others, for Embree inverts transforms, in float */
+    LIKE_THE_OTHERS /* baked or placed, as its shape is */
+} presence;
 
 typedef struct build {
     world *world;
     const kiln_scene *scene;
     shape *shapes; /* one per mesh */
+    uint8_t *presences; /* one per instance */
     placement *placements;
     uint32_t placement_count, prototype_count;
     dvec3 *prototype_centers; /* by prototype: what its coordinates are relative to */
@@ -58,20 +70,54 @@ static void make_shape(void *context, size_t index, uint32_t thread) {
     if (b->shapes[index].mesh && !shape_make(&b->shapes[index], b->world)) atomic_store(&b->failed, true);
 }
 
+/* Rounding leaves 2⁻⁵² of what was turned or stretched before it was flattened; in float, 2⁻²³. */
+static presence presence_of(const mat4 *m) {
+    dvec3 x = d3_load(m->m), y = d3_load(m->m + 4), z = d3_load(m->m + 8);
+    double a = d3_length(x), b = d3_length(y), c = d3_length(z), longest = fmax(a, fmax(b, c));
+    double area = fmax(d3_length(d3_cross(y, z)), fmax(d3_length(d3_cross(z, x)), d3_length(d3_cross(x, y))));
+    if (!(area > 0x1p-50 * longest * longest)) return ABSENT;
+    double volume = fabs(mat4_determinant(m));
+    bool invertible = volume > 0x1p-20 * a * b * c && volume > (double)FLT_MIN && volume < 1 / (double)FLT_MIN;
+    return invertible ? LIKE_THE_OTHERS : ALONE;
+}
+
+/* A shape is shared or not for the sake of the instances that can be placed. */
 static void choose_baking(build *b) {
     for (uint32_t i = 0; i < b->scene->instance_count; i++) {
         const kiln_instance *instance = &b->scene->instances[i];
         shape *s = &b->shapes[instance->mesh - 1];
-        s->mesh = scene_mesh(b->scene, instance->mesh);
-        s->uses++;
-        s->baked |= instance->flat; /* Embree inverts the transforms of instances */
+        mat4 m = to_render_space(b->world, &instance->transforms[0]);
+        b->presences[i] = (uint8_t)presence_of(&m);
+        if (b->presences[i] != ABSENT) s->mesh = scene_mesh(b->scene, instance->mesh);
+        s->uses += b->presences[i] == LIKE_THE_OTHERS;
     }
     for (uint32_t i = 0; i < b->scene->mesh_count; i++) {
         shape *s = &b->shapes[i];
         if (!s->mesh) continue;
-        s->baked |= s->uses == 1 || (uint64_t)s->uses * s->mesh->triangle_count <= BAKE_TRIANGLES;
+        s->baked = s->uses <= 1 || (uint64_t)s->uses * s->mesh->triangle_count <= BAKE_TRIANGLES;
         if (!s->baked) s->prototype = b->prototype_count++;
     }
+}
+
+static bool is_placed(const build *b, uint32_t instance) {
+    return b->presences[instance] == LIKE_THE_OTHERS && !b->shapes[b->scene->instances[instance].mesh - 1].baked;
+}
+
+/* For normals: the cofactors, turned right side out again under a mirror, divided by the longest. One divisor for all, so
+ * that interpolation stays linear: normals are interpolated before a copy is placed, or after. */
+static mat4 normal_matrix(const mat4 *m) {
+    dvec3 columns[3];
+    double longest = 0, side = mat4_determinant(m) < 0 ? -1 : 1;
+    for (int c = 0; c < 3; c++) {
+        columns[c] = mat4_normal(m, (dvec3){c == 0, c == 1, c == 2});
+        longest = fmax(longest, d3_length(columns[c]));
+    }
+    mat4 result = mat4_identity();
+    for (int c = 0; c < 3; c++) {
+        dvec3 column = d3_scale(columns[c], side / longest); /* not 0: what has no area is absent */
+        result.m[4 * c] = column.x, result.m[4 * c + 1] = column.y, result.m[4 * c + 2] = column.z;
+    }
+    return result;
 }
 
 static dvec3 mesh_center(const kiln_mesh *m) {
@@ -79,15 +125,23 @@ static dvec3 mesh_center(const kiln_mesh *m) {
                    0.5 * ((double)m->min[2] + (double)m->max[2])};
 }
 
+static void add_placement(build *b, const shape *s, bool baked, mat4 m) {
+    double longest = 0;
+    for (int c = 0; c < 3; c++) longest = fmax(longest, d3_length(d3_load(m.m + 4 * c)));
+    b->placements[b->placement_count++] = (placement){.shape = s,
+                                                      .baked = baked,
+                                                      .to_target = m,
+                                                      .normals = normal_matrix(&m),
+                                                      .tangents = 1 / longest,
+                                                      .mirrored = mat4_determinant(&m) < 0};
+}
+
 /* Placements: first every baked instance, then every prototype. */
 static void list_placements(build *b) {
     for (uint32_t i = 0; i < b->scene->instance_count; i++) {
         const kiln_instance *instance = &b->scene->instances[i];
-        const shape *s = &b->shapes[instance->mesh - 1];
-        if (!s->baked) continue;
-        mat4 m = to_render_space(b->world, &instance->transforms[0]);
-        b->placements[b->placement_count++] =
-            (placement){.shape = s, .to_target = m, .mirrored = mat4_determinant(&m) < 0};
+        if (b->presences[i] != ABSENT && !is_placed(b, i))
+            add_placement(b, &b->shapes[instance->mesh - 1], true, to_render_space(b->world, &instance->transforms[0]));
     }
     for (uint32_t i = 0; i < b->scene->mesh_count; i++) {
         const shape *s = &b->shapes[i];
@@ -96,7 +150,7 @@ static void list_placements(build *b) {
         dvec3 c = mesh_center(s->mesh);
         m.m[12] = -c.x, m.m[13] = -c.y, m.m[14] = -c.z;
         b->prototype_centers[s->prototype] = c;
-        b->placements[b->placement_count++] = (placement){.shape = s, .to_target = m};
+        add_placement(b, s, false, m);
     }
 }
 
@@ -105,12 +159,12 @@ static bool assign_ranges(build *b, uint64_t *vertices, uint64_t *triangles) {
     uint64_t opaque = 0, coverage = 0, vertex = 0;
     for (uint32_t i = 0; i < b->placement_count; i++) {
         const shape *s = b->placements[i].shape;
-        if (s->baked) coverage += s->triangle_count - s->coverage_count; /* baked coverage lies behind baked opaque */
+        if (b->placements[i].baked) coverage += s->triangle_count - s->coverage_count; /* it lies behind baked opaque */
     }
     for (uint32_t i = 0; i < b->placement_count; i++) {
         placement *p = &b->placements[i];
         const shape *s = p->shape;
-        if (!s->baked) { /* a prototype lies behind everything so far, in one piece */
+        if (!p->baked) { /* a prototype lies behind everything so far, in one piece */
             opaque = opaque > coverage ? opaque : coverage;
             coverage = opaque + s->triangle_count - s->coverage_count;
         }
@@ -141,15 +195,13 @@ static bool allocate(world *w, uint64_t vertices, uint64_t triangles) {
     return done;
 }
 
-/* Direction through a matrix's cofactors, turned right side out again under a mirror. */
-static vec3 place_normal(const placement *p, const float *n) {
-    dvec3 d = mat4_normal(&p->to_target, (dvec3){(double)n[0], (double)n[1], (double)n[2]});
-    return to_float(d3_normalize(d3_scale(d, p->mirrored ? -1 : 1)));
-}
+/* Normals and tangents may come in any length; what weighs in interpolation is their direction. */
+static dvec3 unit(const float *v) { return d3_normalize((dvec3){(double)v[0], (double)v[1], (double)v[2]}); }
+
+static vec3 place_normal(const placement *p, const float *n) { return to_float(mat4_vector(&p->normals, unit(n))); }
 
 static void place_tangent(const placement *p, const float *t, float out[4]) {
-    dvec3 d = mat4_vector(&p->to_target, (dvec3){(double)t[0], (double)t[1], (double)t[2]});
-    v3_store(out, to_float(d3_normalize(d)));
+    v3_store(out, to_float(d3_scale(mat4_vector(&p->to_target, unit(t)), p->tangents)));
     out[3] = p->mirrored ? -t[3] : t[3];
 }
 
@@ -195,7 +247,7 @@ static void place(void *context, size_t index, uint32_t thread) {
 static bool list_instances(build *b) {
     world *w = b->world;
     uint32_t count = 1;
-    for (uint32_t i = 0; i < b->scene->instance_count; i++) count += !b->shapes[b->scene->instances[i].mesh - 1].baked;
+    for (uint32_t i = 0; i < b->scene->instance_count; i++) count += is_placed(b, i);
     w->instances = ARENA_ARRAY(&w->arena, world_instance, count);
     w->prototypes = ARENA_ARRAY(&w->arena, world_prototype, (size_t)b->prototype_count + 1);
     if (!w->instances || !w->prototypes) return false;
@@ -203,7 +255,7 @@ static bool list_instances(build *b) {
     for (uint32_t i = 0; i < b->placement_count; i++) {
         const placement *p = &b->placements[i];
         uint32_t opaque = p->shape->triangle_count - p->shape->coverage_count;
-        if (p->shape->baked) baked_opaque += opaque, baked_coverage += p->shape->coverage_count;
+        if (p->baked) baked_opaque += opaque, baked_coverage += p->shape->coverage_count;
         else w->prototypes[p->shape->prototype] =
                  (world_prototype){{p->opaque_first, p->coverage_first}, {opaque, p->shape->coverage_count}};
     }
@@ -215,38 +267,28 @@ static bool list_instances(build *b) {
     for (uint32_t i = 0; i < b->scene->instance_count; i++) {
         const kiln_instance *from = &b->scene->instances[i];
         const shape *s = &b->shapes[from->mesh - 1];
-        if (!s->baked) world_place_instance(w, from, s->mesh, s->prototype, b->prototype_centers[s->prototype]);
+        if (is_placed(b, i)) world_place_instance(w, from, s->mesh, s->prototype, b->prototype_centers[s->prototype]);
     }
     return true;
 }
 
 void world_place_instance(world *w, const kiln_instance *from, const kiln_mesh *mesh, uint32_t prototype, dvec3 center) {
-    mat4 m = to_render_space(w, &from->transforms[0]);
+    mat4 m = to_render_space(w, &from->transforms[0]), normals = normal_matrix(&m);
     dvec3 origin = mat4_point(&m, center);
-    bool mirrored = mat4_determinant(&m) < 0;
-    double largest = 0, normal_scale = 0;
+    double largest = 0, t[3] = {origin.x, origin.y, origin.z};
     world_instance *to = &w->instances[w->instance_count++];
-    *to = (world_instance){.prototype = prototype, .side = mirrored ? -1.0f : 1.0f};
-    double t[3] = {origin.x, origin.y, origin.z};
+    *to = (world_instance){.prototype = prototype, .side = mat4_determinant(&m) < 0 ? -1.0f : 1.0f};
     for (int i = 0; i < 3; i++) {
         double reach = fabs(t[i]);
         for (int c = 0; c < 3; c++) {
             to->m[4 * i + c] = (float)m.m[4 * c + i];
+            to->normal[3 * i + c] = (float)normals.m[4 * c + i];
             reach += fabs(m.m[4 * c + i]) * 0.5 * ((double)mesh->max[c] - (double)mesh->min[c]);
         }
         to->m[4 * i + 3] = (float)t[i];
         largest = fmax(largest, reach);
     }
     to->magnitude = (float)largest;
-    dvec3 columns[3];
-    for (int c = 0; c < 3; c++) {
-        columns[c] = mat4_normal(&m, (dvec3){c == 0, c == 1, c == 2});
-        normal_scale = fmax(normal_scale, d3_length(columns[c]));
-    }
-    for (int c = 0; c < 3; c++) {
-        vec3 column = to_float(d3_scale(columns[c], (mirrored ? -1 : 1) / (normal_scale > 0 ? normal_scale : 1)));
-        to->normal[c] = column.x, to->normal[3 + c] = column.y, to->normal[6 + c] = column.z;
-    }
     for (int g = 0; g < 2; g++) to->triangle_base[g] = w->prototypes[prototype].first[g];
 }
 
@@ -276,6 +318,8 @@ static bool has_colors(const build *b) {
 
 static bool run(build *b, uint32_t threads, kiln_report *report) {
     world *w = b->world;
+    b->presences = array_alloc(b->scene->instance_count, sizeof *b->presences);
+    if (!b->presences) return report_no_memory(report, "building geometry");
     choose_baking(b);
     w->has_colors = has_colors(b);
     if (w->slots & 1u << SLOT_NORMAL) warn_of_missing_tangents(b, report);
@@ -298,6 +342,7 @@ bool world_build_geometry(world *w, const kiln_scene *scene, uint32_t threads, k
     bool done = b.shapes ? run(&b, threads, report) : report_no_memory(report, "building geometry");
     for (uint32_t i = 0; b.shapes && i < scene->mesh_count; i++) shape_free(&b.shapes[i]);
     free(b.shapes);
+    free(b.presences);
     free(b.placements);
     free(b.prototype_centers);
     return done;

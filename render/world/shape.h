@@ -6,8 +6,8 @@
 
 typedef struct shape {
     const kiln_mesh *mesh; /* NULL: no instance shows it */
-    uint32_t uses;         /* instances */
-    bool baked;            /* every use is written out in render space; else once, and placed by Embree */
+    uint32_t uses;         /* instances that Embree could place */
+    bool baked;            /* those are written out in render space too; else the mesh is once, and Embree places it */
     uint32_t vertex_count, triangle_count, coverage_count; /* triangles whose material has partial coverage */
     uint32_t *corners;     /* 3 a triangle, corner numbers; NULL: corner 3t + k */
     uint32_t *faces;       /* one a triangle; NULL: t */

@@ -1,0 +1,145 @@
+/* The world that a renderer makes of a scene: copies of meshes, and what it says about what it leaves out. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/hash.h"
+#include "tests/render/rays.h"
+
+/* 3,200 triangles: 400 copies are more than are written out (BAKE_TRIANGLES). */
+enum { SIDE = 40, ACROSS = SIDE + 1, VERTICES = ACROSS * ACROSS, TRIANGLES = 2 * SIDE * SIDE, MANY = 400 };
+
+/* A hilly square around the origin. Normals and tangents have all lengths, as they may. */
+static kiln_id add_hills(scene_builder *b, kiln_id material) {
+    static float positions[3 * VERTICES], normals[3 * VERTICES], tangents[4 * VERTICES], uvs[2 * VERTICES];
+    static uint32_t faces[3 * TRIANGLES];
+    for (int i = 0; i < VERTICES; i++) {
+        double x = (double)(i % ACROSS) / SIDE - 0.5, z = (double)(i / ACROSS) / SIDE - 0.5;
+        double length = 0.5 + i % 7, dx = 1.2 * cos(12 * x), dz = -0.8 * sin(8 * z);
+        const double p[3] = {x, 0.1 * sin(12 * x) + 0.1 * cos(8 * z), z}, n[3] = {-dx, 1, -dz}, t[3] = {1, dx, 0};
+        for (int k = 0; k < 3; k++) {
+            positions[3 * i + k] = (float)p[k];
+            normals[3 * i + k] = (float)(length * n[k]);
+            tangents[4 * i + k] = (float)(length * t[k]);
+        }
+        tangents[4 * i + 3] = 1;
+    }
+    uint32_t *f = faces;
+    for (uint32_t j = 0; j < SIDE; j++)
+        for (uint32_t i = 0; i < SIDE; i++, f += 6) {
+            uint32_t a = j * ACROSS + i, c = a + ACROSS;
+            memcpy(f, (uint32_t[]){a, c, a + 1, a + 1, c, c + 1}, 6 * sizeof *f);
+        }
+    const kiln_primvar primvars[] = {{.kind = KILN_PRIMVAR_NORMAL, .values = normals, .value_count = VERTICES},
+                                     {.kind = KILN_PRIMVAR_TANGENT, .values = tangents, .value_count = VERTICES},
+                                     {.kind = KILN_PRIMVAR_UV, .values = uvs, .value_count = VERTICES}};
+    return add_mesh(b, &(kiln_mesh_desc){.name = "hills", .vertex_count = VERTICES, .positions = positions,
+                                         .face_count = TRIANGLES, .face_vertices = faces, .primvars = primvars,
+                                         .primvar_count = 3, .material = material});
+}
+
+static void add_others(scene_builder *b, kiln_id mesh, int count) {
+    for (int i = 0; i < count; i++)
+        add_instance(b, mesh, (double[]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1.1 * (i % 20), 0, 1.1 * (i / 20), 1});
+}
+
+/* Scale 0 is how a node is hidden. A copy without an area is not there; a flat one is written out alone. */
+static void a_flat_copy_leaves_the_others_shared(void **state) {
+    (void)state;
+    static const struct { double scale[3]; uint32_t triangles; } rows[] = {
+        {{1, 1, 1}, 0}, {{0, 0, 0}, 0}, {{0, 2, 0}, 0}, {{2, 0, 2}, TRIANGLES}, {{1e-30, 1e-30, 1e-30}, TRIANGLES}};
+    for (int i = 0; i < 5; i++) {
+        scene_builder b = builder_make();
+        kiln_id mesh = add_hills(&b, 0);
+        add_others(&b, mesh, MANY);
+        const double *s = rows[i].scale, turn = 0.3; /* in a turned parent, so that 0 is what rounding makes of it */
+        double c = cos(turn), d = sin(turn);
+        add_instance(&b, mesh, (double[]){c * s[0], d * s[0], 0, 0, -d * s[1], c * s[1], 0, 0, 0, 0, s[2], 0, 3, 5, 3, 1});
+        world *w = build_world(&b);
+        assert_int_equal(w->instance_count, 1 + MANY + (i == 0));
+        assert_int_equal(w->triangle_count, TRIANGLES + rows[i].triangles);
+        rays r = rays_make(1);
+        rays_set(&r, 0, to_float(world_point(w, (dvec3){3.01, 50, 3.02})), v3(0, -1, 0));
+        rays_closest(w, &r, NULL, 1);
+        bool above = fabs((double)r.t[0] / w->scale - 45) < 1; /* or else the copies at y = 0 */
+        assert_true(above == (i == 0 || i == 3));
+        rays_free(&r);
+        world_destroy(w);
+        builder_free(&b);
+    }
+}
+
+/* In a parent that stretches, a turned child: shears and flips too. */
+static const double placements[][16] = {
+    {1, 0, 0, 0, 0, 0.2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
+    {0.6, 0.8, 0, 0, -2.4, 1.8, 0, 0, 0, 0, 5, 0, 1, 2, 3, 1},
+    {-1, 0.3, 0, 0, 0.5, 2, 0.1, 0, 0, 0.7, 0.4, 0, -3, 0, 1, 1},
+    {1e-3, 0, 0, 0, 0, 1e-3, 0, 0, 0, 0, 2e-3, 0, 4, 1, 0, 1},
+};
+enum { PLACEMENTS = sizeof placements / sizeof *placements };
+
+/* The hills under all placements, and so many other copies. */
+static world *place_hills(scene_builder *b, int others) {
+    *b = builder_make();
+    kiln_material m = diffuse_material(1, 1, 1);
+    m.normal.texture = (kiln_texture){.image = add_image(b, (float[]){0.5f, 0.5f, 1}, 1, 1)};
+    kiln_id mesh = add_hills(b, add_material(b, &m));
+    for (int i = 0; i < PLACEMENTS; i++) add_instance(b, mesh, placements[i]);
+    add_others(b, mesh, others);
+    return build_world(b);
+}
+
+/* Largest difference of directions at a vertex, and by how much the ratio of lengths varies: equal ratios are what makes
+ * interpolated directions equal too. */
+static double difference(vec3 a, vec3 b, double *ratio) {
+    double la = (double)v3_length(a), lb = (double)v3_length(b), here = la / lb, first = *ratio > 0 ? *ratio : here;
+    *ratio = first;
+    return fmax((double)v3_length(v3_sub(v3_scale(a, (float)(1 / la)), v3_scale(b, (float)(1 / lb)))),
+                fabs(here / first - 1));
+}
+
+/* Whether a mesh was written out or is placed by Embree must not be seen. */
+static void written_and_placed_copies_are_alike(void **state) {
+    (void)state;
+    scene_builder few, many;
+    world *written = place_hills(&few, 0), *placed = place_hills(&many, MANY);
+    assert_int_equal(written->instance_count, 1);
+    assert_int_equal(placed->instance_count, 1 + PLACEMENTS + MANY);
+    for (uint32_t i = 0; i < PLACEMENTS; i++) {
+        const world_instance *copy = &placed->instances[1 + i];
+        double points = 0, normals = 0, tangents = 0, normal_ratio = 0, tangent_ratio = 0;
+        for (uint32_t v = 0; v < VERTICES; v++) {
+            uint32_t at = i * VERTICES + v;
+            const world_vertex *a = &written->vertices[at], *b = &placed->vertices[v];
+            dvec3 p = world_point(written, (dvec3){0, 0, 0}), q = world_point(placed, (dvec3){0, 0, 0});
+            vec3 there = world_instance_point(copy, v3_load(b->p));
+            const double where[3] = {((double)a->p[0] - p.x) / written->scale - ((double)there.x - q.x) / placed->scale,
+                                     ((double)a->p[1] - p.y) / written->scale - ((double)there.y - q.y) / placed->scale,
+                                     ((double)a->p[2] - p.z) / written->scale - ((double)there.z - q.z) / placed->scale};
+            points = fmax(points, d3_length(d3_load(where)));
+            normals = fmax(normals, difference(v3_load(a->n), world_instance_normal(copy, v3_load(b->n)), &normal_ratio));
+            const float *s = written->tangents + 4 * (size_t)at, *t = placed->tangents + 4 * (size_t)v;
+            tangents = fmax(tangents, difference(v3_load(s), world_instance_vector(copy, v3_load(t)), &tangent_ratio));
+            assert_true(s[3] == t[3] * copy->side);
+        }
+        if (points > 1e-5 || normals > 2e-6 || tangents > 2e-6)
+            fail_msg("placement %u: points %g, normals %g, tangents %g", i, points, normals, tangents);
+    }
+    world_destroy(written);
+    world_destroy(placed);
+    builder_free(&few);
+    builder_free(&many);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_flat_copy_leaves_the_others_shared),
+        cmocka_unit_test(written_and_placed_copies_are_alike),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
