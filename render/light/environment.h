@@ -6,16 +6,17 @@
 #include "base/kernel.h"
 #include "render/light/table.h"
 
-/* A direction as a place in the picture: u in turns, before rotation, and cos θ from the top. */
-KERNEL vec3 environment_direction(float u, float cos_theta) {
+/* The direction at u turns, before rotation, and at `sag` = 1 − |cos θ| from the pole on `side` (1: the top, −1: the
+ * bottom). A float has digits for angles near a pole in this, and next to none in cos θ. */
+KERNEL vec3 environment_direction(float u, float sag, float side) {
     fm_pair a = fm_sincos_2pi(u - 0.5f);
-    float sin2 = 1.0f - cos_theta * cos_theta, s = sqrtf(sin2 > 0.0f ? sin2 : 0.0f);
-    return v3(s * a.cos, cos_theta, s * a.sin);
+    float s = sqrtf(sag * (2.0f - sag)); /* sin² = 1 − cos²; 0 ≤ sag ≤ 2 */
+    return v3(s * a.cos, side * (1.0f - sag), s * a.sin);
 }
 /* u in [0, 1] and v = θ/π in [0, 1], in the world: rotation is added on look-up. */
 KERNEL vec2 environment_place(vec3 d) {
     float u = 0.5f + fm_atan2(d.z, d.x) * 0.159154943f;
-    return (vec2){u, fm_acos(fm_clamp(d.y, -1.0f, 1.0f)) * 0.318309886f};
+    return (vec2){u, fm_atan2(sqrtf(d.x * d.x + d.z * d.z), d.y) * 0.318309886f};
 }
 
 typedef struct environment_value { vec3 radiance; float pdf; } environment_value;
@@ -52,13 +53,16 @@ static inline void environment_pick(const environment *e, vec2 u, float fine, li
     uint32_t row = distribution_pick(e->row_cdf, e->row_guide, (uint32_t)e->height, u.y, fine, &down);
     uint32_t column = distribution_pick(e->texel_cdf + (size_t)row * (w + 1), e->texel_guide + (size_t)row * w, w, u.x,
                                         fine, &across);
-    float step = 0.5f / (float)e->height;
-    float top = fm_sincos_2pi((float)(int32_t)row * step).cos, bottom = fm_sincos_2pi((float)(int32_t)(row + 1) * step).cos;
+    /* Uniform in cos θ, counted from the nearer pole: 1 − cos θ = 2 sin²(θ/2). */
+    int below = 2 * row + 1 > (uint32_t)e->height;
+    float nearest = (float)(int32_t)(below ? (uint32_t)e->height - 1 - row : row), step = 0.25f / (float)e->height;
+    float low = fm_sincos_2pi(nearest * step).sin, high = fm_sincos_2pi((nearest + 1.0f) * step).sin;
+    float sag = 2.0f * fm_lerp(low * low, high * high, below ? 1.0f - down : down), side = below ? -1.0f : 1.0f;
     float turns = ((float)(int32_t)column + across) / (float)e->width - e->rotation_turns;
-    float cos_theta = fm_clamp(top + down * (bottom - top), -1.0f, 1.0f);
-    environment_value v = environment_look_up(e, (vec2){turns, fm_acos(cos_theta) * 0.318309886f});
-    l->position = v3(turns, cos_theta, 0.0f);
-    l->radiance = v.radiance;
+    float v = fm_atan2(sqrtf(sag * (2.0f - sag)), side * (1.0f - sag)) * 0.318309886f;
+    environment_value value = environment_look_up(e, (vec2){turns, v});
+    l->position = v3(turns, sag, side);
+    l->radiance = value.radiance;
     l->area = e->texels[4 * ((size_t)row * w + column) + 3];
 }
 

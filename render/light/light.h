@@ -45,17 +45,20 @@ KERNEL light_sampled light_sample_point(const light *l, vec3 p) {
                            length > 0.0f ? 1.0f : 0.0f, 1};
 }
 
+/* Density per solid angle of a direction into the disk of a light that is not parallel: uniform. */
+KERNEL float light_distant_pdf(float one_minus_cos) { return 0.159154943f / fm_max(one_minus_cos, 1e-30f); }
+
 KERNEL light_sampled light_sample_distant(const light *l, vec2 u) {
     frame f = frame_make(v3_neg(l->axis));
     int parallel = !(l->one_minus_cos > 0.0f);
     vec3 wi = v3_select(parallel, f.z, frame_to_world(&f, warp_cone(u, l->one_minus_cos)));
-    float pdf = 0.159154943f / fm_max(l->one_minus_cos, 1e-30f);
-    return (light_sampled){v3_normalize(wi), v3(0, 0, 0), INFINITY, l->radiance, parallel ? 1.0f : pdf, parallel};
+    float pdf = parallel ? 1.0f : light_distant_pdf(l->one_minus_cos);
+    return (light_sampled){v3_normalize(wi), v3(0, 0, 0), INFINITY, l->radiance, pdf, parallel};
 }
 
-/* position.x: turns, position.y: cos θ, area: the density, as environment_pick leaves them. */
+/* position: what environment_direction takes, area: the density, as environment_pick leaves them. */
 KERNEL light_sampled light_sample_environment(const light *l) {
-    vec3 wi = environment_direction(l->position.x, l->position.y);
+    vec3 wi = environment_direction(l->position.x, l->position.y, l->position.z);
     return (light_sampled){wi, v3(0, 0, 0), INFINITY, l->radiance, l->area, 0};
 }
 

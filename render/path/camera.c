@@ -40,7 +40,7 @@ bool camera_make(const world *w, const kiln_camera *from, uint32_t width, uint32
     c->far = from->zfar > 0 ? (float)(from->zfar * w->scale) : INFINITY;
     c->lens_radius = (float)(from->lens_radius * w->scale);
     c->blades = from->blades >= 3 ? (float)from->blades : 0.0f;
-    c->blade_rotation_turns = (float)(from->blade_rotation_rad / (2 * M_PI));
+    c->blade_rotation_turns = to_turns(from->blade_rotation_rad);
     c->focus = from->focus_distance > 0 ? (float)(from->focus_distance * w->scale) : 1.0f;
     if (c->lens_radius > 0 && !(from->focus_distance > 0)) c->focus = focus_on_middle(w, c);
     return true;

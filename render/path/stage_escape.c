@@ -11,7 +11,7 @@ static vec3 sun_radiance(const path_context *c, vec3 d, float pdf) {
         vec3 off = v3_add(d, l->axis); /* 1 − cos = |d − toward|²/2: exact for small disks */
         if (0.5f * v3_dot(off, off) > l->one_minus_cos) continue;
         float probability = c->light_cdf ? distribution_probability(c->light_cdf, t->distant[k]) : 0.0f;
-        float light_pdf = probability * (0.159154943f / l->one_minus_cos);
+        float light_pdf = probability * light_distant_pdf(l->one_minus_cos);
         sum = v3_madd(sum, estimate_hit_weight(c->estimator, pdf, light_pdf), l->radiance);
     }
     return sum;
@@ -45,11 +45,8 @@ static void add_environment(const path_context *c, batch *b, uint32_t count) {
 /* What a camera ray that meets nothing shows. */
 static void show_background(const path_context *c, batch *b, uint32_t count) {
     path_state *s = batch_state(b);
-    for (uint32_t k = 0; k < count; k++) {
-        uint32_t i = b->scratch.list[k];
-        b->out.alpha[s->slot[i]] = 0.0f;
-        if (c->background == KILN_BACKGROUND_COLOR) add(s, i, c->background_color);
-    }
+    if (c->background != KILN_BACKGROUND_COLOR) return;
+    for (uint32_t k = 0; k < count; k++) add(s, b->scratch.list[k], c->background_color);
 }
 
 void STAGE(escape)(const path_context *c, batch *b) {
@@ -57,7 +54,8 @@ void STAGE(escape)(const path_context *c, batch *b) {
     const path_hit *h = batch_hit(b);
     uint32_t *list = b->scratch.list, count = 0;
     bool first = b->depth == 0;
-    for (uint32_t i = 0; first && i < b->n; i++) b->out.alpha[s->slot[i]] = 1.0f;
+    for (uint32_t i = 0; first && i < b->n; i++)
+        b->out.alpha[s->slot[i]] = h->triangle[i] < TRIANGLE_REFUSED ? 1.0f : 0.0f;
     for (uint32_t i = 0; i < b->n; i++)
         if (h->triangle[i] == TRIANGLE_NONE) list[count++] = i;
     if (first) show_background(c, b, count);

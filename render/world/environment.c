@@ -101,6 +101,6 @@ bool environment_build(world *w, const kiln_scene *scene, const kiln_decoding *d
     environment *e = &w->lights.environment;
     if (!load(e, &w->arena, scene, decoding, report)) return false;
     e->present = true;
-    e->rotation_turns = (float)(scene->environment.rotation_rad / (2 * M_PI));
+    e->rotation_turns = to_turns(scene->environment.rotation_rad);
     return build_distribution(e, &w->arena) || report_no_memory(report, "building the environment");
 }

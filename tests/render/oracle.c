@@ -93,7 +93,7 @@ static void escape(const path_context *c, path *p) {
         const light *l = &t->lights[t->distant[k]];
         vec3 off = v3_add(p->direction, l->axis);
         if (0.5f * v3_dot(off, off) > l->one_minus_cos) continue;
-        float pdf = chosen_probability(c, t->distant[k]) * (0.159154943f / l->one_minus_cos);
+        float pdf = chosen_probability(c, t->distant[k]) * light_distant_pdf(l->one_minus_cos);
         suns = v3_madd(suns, estimate_hit_weight(c->estimator, p->pdf, pdf), l->radiance);
     }
     if (t->distant_count) collect(p, suns, 1);

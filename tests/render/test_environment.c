@@ -114,6 +114,65 @@ static void rotation_turns_the_surroundings(void **state) {
     }
 }
 
+/* Turns are counted in double: a float of a hundred million radians would have no angle left. */
+static void many_turns_are_none(void **state) {
+    (void)state;
+    const double whole = 2 * M_PI * 16777216, rest = 1.25;
+    fixture once = build(random_picture(), WIDTH, HEIGHT, rest), often = build(random_picture(), WIDTH, HEIGHT, whole + rest);
+    fixture back = build(random_picture(), WIDTH, HEIGHT, rest - whole);
+    float expected = once.w.lights.environment.rotation_turns;
+    assert_true(fabs((double)expected - rest / (2 * M_PI)) < 1e-7);
+    assert_true(fabsf(often.w.lights.environment.rotation_turns - expected) < 1e-7f);
+    assert_true(fabsf(back.w.lights.environment.rotation_turns - expected) < 1e-7f);
+    drop(&once);
+    drop(&often);
+    drop(&back);
+}
+
+/* Small bright disks at both poles of a fine picture: where they are is known to a fraction of a row, and what is picked
+ * gives their irradiance. */
+static void poles_are_precise(void **state) {
+    (void)state;
+    enum { ACROSS = 4, DOWN = 4096, BRIGHT = 3, DRAWS = 100000, STEPS = 100000 };
+    static float rgb[3 * ACROSS * DOWN];
+    for (int i = 0; i < 3 * ACROSS * BRIGHT; i++) rgb[i] = rgb[3 * ACROSS * DOWN - 1 - i] = 1e6f;
+    fixture f = build(rgb, ACROSS, DOWN, 0);
+    const environment *e = &f.w.lights.environment;
+    for (int i = 1; i < 400; i++) {
+        double row = 0.01 * i, v = row / DOWN;
+        for (int pole = 0; pole < 2; pole++) {
+            dvec3 d = direction_of(0.3, pole ? 1 - v : v);
+            double found = (double)environment_place(v3((float)d.x, (float)d.y, (float)d.z)).y, exact = pole ? 1 - v : v;
+            if (fabs(found - exact) * DOWN > 1e-3) fail_msg("row %g from pole %d: %g", row, pole, found * DOWN);
+        }
+    }
+    double exact = 0; /* ∫ L cos over one disk, rows blended linearly */
+    for (int i = 0; i < STEPS; i++) {
+        double row = (BRIGHT + 0.5) * (i + 0.5) / STEPS, theta = M_PI * row / DOWN;
+        exact += 1e6 * fmin(BRIGHT + 0.5 - row, 1) * M_PI * sin(2 * theta) * M_PI / DOWN * (BRIGHT + 0.5) / STEPS;
+    }
+    tally above = {0}, below = {0};
+    stream random = {8, 0};
+    for (int n = 0; n < DRAWS; n++) {
+        light l = {.kind = LIGHT_ENVIRONMENT};
+        vec2 u = stream_pair(&random);
+        environment_pick(e, u, stream_next(&random), &l);
+        light_sampled s = light_sample_environment(&l);
+        assert_true(fabsf(v3_length(s.wi) - 1) < 1e-6f);
+        assert_true(fabsf(environment_look_up(e, environment_place(s.wi)).radiance.x - s.radiance.x) < 1e3f);
+        tally_add(&above, (double)(fmaxf(s.wi.y, 0) * s.radiance.x / s.pdf));
+        tally_add(&below, (double)(fmaxf(-s.wi.y, 0) * s.radiance.x / s.pdf));
+    }
+    if (normal_tail(fabs(above.mean - exact) / tally_error(&above)) < sidak(1e-3, 2) ||
+        normal_tail(fabs(below.mean - exact) / tally_error(&below)) < sidak(1e-3, 2))
+        fail_msg("%.4f ± %.4f from above, %.4f ± %.4f from below, expected %.4f", above.mean, tally_error(&above),
+                 below.mean, tally_error(&below), exact);
+    /* With the noise of which pole taken out: only the blending of rows is left. */
+    if (fabs(above.mean + below.mean - 2 * exact) > 2e-3 * exact)
+        fail_msg("%.4f from both sides, expected %.4f", above.mean + below.mean, 2 * exact);
+    drop(&f);
+}
+
 static void densities_integrate_to_one(void **state) {
     (void)state;
     static const double rotations[] = {0, 1, -7};
@@ -260,7 +319,8 @@ static void bad_texels_are_black(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(texels_lie_where_the_formula_says), cmocka_unit_test(look_ups_are_bilinear_and_wrap),
-        cmocka_unit_test(rotation_turns_the_surroundings),   cmocka_unit_test(densities_integrate_to_one),
+        cmocka_unit_test(rotation_turns_the_surroundings),   cmocka_unit_test(many_turns_are_none),
+        cmocka_unit_test(poles_are_precise),                 cmocka_unit_test(densities_integrate_to_one),
         cmocka_unit_test(densities_follow_brightness),
         cmocka_unit_test(picks_agree_with_look_ups),         cmocka_unit_test(irradiance_agrees),
         cmocka_unit_test(a_constant_is_uniform),             cmocka_unit_test(bad_texels_are_black),
