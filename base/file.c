@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,14 +11,22 @@
 
 #include "base/text.h"
 
+/* Messages call the streams by name; "-" would be looked for as a file. */
+static bool is_stream(const char *path) { return strcmp(path, "-") == 0; }
+
 static bool read_error(const char *path, const kiln_where *where, kiln_report *report, int error) {
-    kiln_where here = where ? *where : where_root(path);
+    const char *reason = error == ENODEV ? "Not a regular file" : strerror(error);
+    if (is_stream(path)) {
+        kiln_where here = where_root("standard input");
+        return report_error(report, KILN_CODE_FILE_UNREADABLE, &here, "send a file into it: < car.glb",
+                            "it cannot be read: %s", reason);
+    }
+    kiln_where here = where ? *where : where_root(*path ? path : "''");
+    const char *subject = where ? path : "the file";
     if (error == ENOENT || error == ENOTDIR)
-        return report_error(report, KILN_CODE_FILE_MISSING, &here, "check the path", "%s does not exist",
-                            where ? path : "the file");
+        return report_error(report, KILN_CODE_FILE_MISSING, &here, "check the path", "%s does not exist", subject);
     return report_error(report, KILN_CODE_FILE_UNREADABLE, &here, "check the path and its permissions",
-                        "%s cannot be read: %s", where ? path : "the file",
-                        error == ENODEV ? "Not a regular file" : strerror(error));
+                        "%s cannot be read: %s", subject, reason);
 }
 
 static bool too_large(const char *path, uint64_t limit, const kiln_where *where, kiln_report *report) {
@@ -61,7 +70,7 @@ static int read_all(int fd, uint64_t limit, size_t expected, kiln_bytes *bytes) 
 
 bool file_read(const char *path, uint64_t limit, kiln_bytes *bytes, const kiln_where *where, kiln_report *report) {
     *bytes = (kiln_bytes){0};
-    bool from_stdin = strcmp(path, "-") == 0;
+    bool from_stdin = is_stream(path);
     /* O_NONBLOCK: opening a FIFO that nobody writes must not hang; the kind is checked next. */
     int fd = from_stdin ? STDIN_FILENO : open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0) return read_error(path, where, report, errno);
@@ -82,25 +91,95 @@ void file_free(kiln_bytes *bytes) {
     *bytes = (kiln_bytes){0};
 }
 
+file_identity file_identify(const char *path) {
+    struct stat status;
+    bool exists = (is_stream(path) ? fstat(STDIN_FILENO, &status) : stat(path, &status)) == 0;
+    if (!exists || !S_ISREG(status.st_mode)) return (file_identity){0};
+    return (file_identity){true, (uint64_t)status.st_dev, (uint64_t)status.st_ino};
+}
+
+/* The folder that a name lies in, "." for a bare one; free(). */
+static char *folder_of(const char *path) {
+    const char *base = path_base(path);
+    return base > path ? strndup(path, (size_t)(base - path)) : strdup(".");
+}
+
+static bool same_folder(const char *a, const char *b) {
+    char *folder_a = folder_of(a), *folder_b = folder_of(b);
+    struct stat status_a, status_b;
+    bool same = folder_a && folder_b && stat(folder_a, &status_a) == 0 && stat(folder_b, &status_b) == 0 &&
+                status_a.st_dev == status_b.st_dev && status_a.st_ino == status_b.st_ino;
+    free(folder_a);
+    free(folder_b);
+    return same;
+}
+
+bool file_same_target(const char *a, const char *b) {
+    struct stat status;
+    if (is_stream(a) || is_stream(b)) return is_stream(a) && is_stream(b);
+    const char *const paths[] = {a, b};
+    for (int i = 0; i < 2; i++)
+        if (stat(paths[i], &status) == 0 && !S_ISREG(status.st_mode)) return false; /* written as it is */
+    char *real_a = realpath(a, NULL), *real_b = realpath(b, NULL); /* NULL: it is not there yet */
+    const char *target_a = real_a ? real_a : a, *target_b = real_b ? real_b : b;
+    bool same = strcmp(path_base(target_a), path_base(target_b)) == 0 && same_folder(target_a, target_b);
+    free(real_a);
+    free(real_b);
+    return same;
+}
+
 struct kiln_writer {
     char *path;      /* as given, for messages */
     char *target;    /* where links lead; renamed onto */
     char *temporary; /* NULL: written as it is */
     int fd, error;
+    int slot; /* of the temporary, in temporaries */
     bool to_stdout;
 };
 
+/* The names of temporaries: a signal handler has no writer that it could ask, and signals come to the process, so this
+ * is the process's too. Who takes a name out of its slot owns it; what a handler took is not given back. */
+enum { TEMPORARIES_MAX = 64, NO_SLOT = -1 };
+static _Atomic(char *) temporaries[TEMPORARIES_MAX];
+_Static_assert(ATOMIC_POINTER_LOCK_FREE == 2, "a signal handler reads the table");
+
+/* NO_SLOT: all are taken, and this one is left behind when the process is ended. */
+static int list_temporary(char *name) {
+    for (int slot = 0; slot < TEMPORARIES_MAX; slot++) {
+        char *empty = NULL;
+        if (atomic_compare_exchange_strong(&temporaries[slot], &empty, name)) return slot;
+    }
+    return NO_SLOT;
+}
+
+static void free_temporary(kiln_writer *writer) {
+    char *name = writer->temporary;
+    if (writer->slot == NO_SLOT || atomic_compare_exchange_strong(&temporaries[writer->slot], &name, NULL))
+        free(writer->temporary);
+}
+
+void file_remove_temporaries(void) {
+    for (int slot = 0; slot < TEMPORARIES_MAX; slot++) {
+        char *name = atomic_exchange(&temporaries[slot], NULL);
+        if (name) (void)unlink(name);
+    }
+}
+
 static bool write_error(const char *path, int error, kiln_report *report) {
-    kiln_where here = where_root(path);
-    return report_error(report, KILN_CODE_OUTPUT, &here, "check the folder, its permissions and the free space",
-                        "the file cannot be written: %s", strerror(error));
+    bool stream = is_stream(path);
+    kiln_where here = where_root(stream ? "standard output" : *path ? path : "''");
+    const char *remedy = stream           ? "check what it leads to"
+                         : error == EFBIG ? "raise the limit of file sizes (ulimit -f), or write less"
+                                          : "check the folder, its permissions and the free space";
+    return report_error(report, KILN_CODE_OUTPUT, &here, remedy, "%s cannot be written: %s",
+                        stream ? "it" : "the file", strerror(error));
 }
 
 static void free_writer(kiln_writer *writer) {
     if (writer->fd >= 0 && !writer->to_stdout) close(writer->fd);
+    free_temporary(writer);
     free(writer->path);
     free(writer->target);
-    free(writer->temporary);
     free(writer);
 }
 
@@ -114,7 +193,10 @@ static int open_temporary(kiln_writer *writer) {
         writer->temporary = text_take(&name);
         if (!writer->temporary) return ENOMEM;
         writer->fd = open(writer->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (writer->fd >= 0) return 0;
+        if (writer->fd >= 0) {
+            writer->slot = list_temporary(writer->temporary);
+            return 0;
+        }
         if (errno != EEXIST) return errno;
     }
     return EEXIST;
@@ -122,7 +204,7 @@ static int open_temporary(kiln_writer *writer) {
 
 static int open_writer(kiln_writer *writer) {
     struct stat status;
-    writer->to_stdout = strcmp(writer->path, "-") == 0;
+    writer->to_stdout = is_stream(writer->path);
     if (writer->to_stdout) {
         writer->fd = STDOUT_FILENO;
         return 0;
@@ -148,7 +230,7 @@ kiln_writer *file_create(const char *path, kiln_report *report) {
         report_no_memory(report, "opening an output file");
         return NULL;
     }
-    *writer = (kiln_writer){.path = copy, .fd = -1};
+    *writer = (kiln_writer){.path = copy, .fd = -1, .slot = NO_SLOT};
     int error = open_writer(writer);
     if (!error) return writer;
     write_error(path, error, report);
@@ -191,8 +273,7 @@ bool file_write_at(kiln_writer *writer, const void *data, size_t size, uint64_t 
 
 /* The rename itself must reach the disk too. */
 static void flush_folder(const char *path) {
-    const char *slash = strrchr(path, '/');
-    char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+    char *folder = folder_of(path);
     int fd = folder ? open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC) : -1;
     if (fd >= 0) {
         (void)fsync(fd);

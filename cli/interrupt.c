@@ -4,14 +4,20 @@
 #include <stddef.h>
 #include <unistd.h>
 
+#include "base/file.h"
+
 enum { EXIT_INTERRUPTED = 130 };
 
 static volatile int requested, armed;
 
 static void handle(int signal) {
     (void)signal;
-    if (!armed || requested) _exit(EXIT_INTERRUPTED); /* the one thing that a handler may do */
-    requested = 1;
+    if (armed && !requested) {
+        requested = 1;
+        return;
+    }
+    file_remove_temporaries();
+    _exit(EXIT_INTERRUPTED);
 }
 
 /* A signal that the caller had ignored (nohup, jobs in the background) stays ignored. */

@@ -1,4 +1,5 @@
-/* cli/interrupt.h: Ctrl-C and SIGTERM: the first asks to stop and write what there is, the second quits at once. */
+/* cli/interrupt.h: Ctrl-C and SIGTERM: the first asks to stop and write what there is, the second quits at once
+ * and leaves no half-written file. */
 #ifndef KILN_CLI_INTERRUPT_H
 #define KILN_CLI_INTERRUPT_H
 

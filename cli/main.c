@@ -45,8 +45,9 @@ static int run(const cli_command *command, int count, char **arguments, kiln_rep
 int main(int argc, char **argv) {
     kiln_report *report = kiln_report_create();
     if (!report) return EXIT_FAILURE;
-    /* Writing to a pipe that nobody reads is an error like any other. */
+    /* Writing to a pipe that nobody reads, or beyond the limit of file sizes, is an error like any other. */
     signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
     const cli_command *command = argc > 1 ? find(argv[1]) : NULL;
     int code = EXIT_USAGE;
     if (command) code = run(command, argc - 2, argv + 2, report);

@@ -194,7 +194,7 @@ static void what_cannot_be_written(void **state) {
     assert_null(file_create("/nonexistent/a", report));
     check_failure(report, KILN_CODE_OUTPUT, "/nonexistent/a");
     assert_null(file_create("", report));
-    check_failure(report, KILN_CODE_OUTPUT, "");
+    check_failure(report, KILN_CODE_OUTPUT, "''");
     const char *fifo = in_folder("fifo"); /* nobody reads it: opening must not wait */
     assert_int_equal(mkfifo(fifo, 0600), 0);
     assert_null(file_create(fifo, report));
@@ -267,6 +267,73 @@ static void old_temporaries_are_stepped_over(void **state) {
     unlink(path);
 }
 
+/* What a signal handler calls: the files go, and the writers can only fail. */
+static void temporaries_go_when_the_process_ends(void **state) {
+    (void)state;
+    kiln_report *report = kiln_report_create();
+    kiln_writer *writers[3];
+    for (int i = 0; i < 3; i++) {
+        writers[i] = file_create(in_folder(i ? "b" : "a"), report);
+        assert_non_null(writers[i]);
+        assert_int_equal(access(file_temporary_name(writers[i]), F_OK), 0);
+    }
+    file_discard(writers[1]); /* its slot is empty again */
+    file_remove_temporaries();
+    assert_int_equal(access(file_temporary_name(writers[0]), F_OK), -1);
+    assert_int_equal(access(file_temporary_name(writers[2]), F_OK), -1);
+    assert_false(file_commit(writers[0], report));
+    check_failure(report, KILN_CODE_OUTPUT, in_folder("a"));
+    file_discard(writers[2]);
+    assert_true(file_replace(in_folder("a"), "a", 1, report)); /* later ones have nothing to do with it */
+    file_remove_temporaries();
+    check_content(in_folder("a"), "a", 1);
+    unlink(in_folder("a"));
+    kiln_report_destroy(report);
+}
+
+static void files_have_an_identity(void **state) {
+    (void)state;
+    kiln_report *report = kiln_report_create();
+    const char *a = in_folder("a"), *b = in_folder("b"), *link = in_folder("link");
+    assert_true(file_replace(a, "a", 1, report) && file_replace(b, "a", 1, report));
+    assert_int_equal(symlink("a", link), 0);
+    file_identity id = file_identify(a);
+    assert_true(id.known && file_same(id, file_identify(link)));
+    assert_false(file_same(id, file_identify(b)));
+    unlink(link);
+    assert_false(file_same(file_identify(link), file_identify(link))); /* what is not there is like nothing */
+    const char *const none[] = {folder, "/dev/null", in_folder("missing")};
+    for (size_t i = 0; i < sizeof none / sizeof *none; i++) assert_false(file_identify(none[i]).known);
+    kiln_report_destroy(report);
+    unlink(b);
+    unlink(a);
+}
+
+static void targets_are_one_by_folder_and_name(void **state) {
+    (void)state;
+    kiln_report *report = kiln_report_create();
+    char here[512], there[512], detour[512];
+    snprintf(here, sizeof here, "%s", in_folder("a"));
+    snprintf(there, sizeof there, "%s", in_folder("b"));
+    snprintf(detour, sizeof detour, "%s/./../%s", folder, strrchr(folder, '/') + 1);
+    strcat(detour, "/a");
+    for (int exists = 0; exists < 2; exists++) {
+        assert_true(file_same_target(here, here) && file_same_target(here, detour));
+        assert_false(file_same_target(here, there));
+        assert_true(file_replace(here, "a", 1, report));
+    }
+    assert_int_equal(symlink("a", there), 0); /* writing goes through the link */
+    assert_true(file_same_target(here, there));
+    unlink(there);
+    assert_int_equal(link(here, there), 0); /* renaming onto one name leaves the other */
+    assert_false(file_same_target(here, there));
+    assert_true(file_same_target("-", "-"));
+    assert_false(file_same_target("-", here) || file_same_target("/dev/null", "/dev/null"));
+    kiln_report_destroy(report);
+    unlink(there);
+    unlink(here);
+}
+
 static void paths_are_taken_apart(void **state) {
     (void)state;
     static const char *const cases[][3] = {
@@ -294,6 +361,9 @@ int main(void) {
         cmocka_unit_test(pipes_are_written_as_they_are),
         cmocka_unit_test(a_link_stays_a_link),
         cmocka_unit_test(old_temporaries_are_stepped_over),
+        cmocka_unit_test(temporaries_go_when_the_process_ends),
+        cmocka_unit_test(files_have_an_identity),
+        cmocka_unit_test(targets_are_one_by_folder_and_name),
         cmocka_unit_test(paths_are_taken_apart),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

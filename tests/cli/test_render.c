@@ -10,6 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <time.h>
 
 #include "tests/cli/run.h"
 
@@ -296,11 +298,47 @@ int main(void) {
                                        CLI_TEST(pngs_are_reproducible),
                                        CLI_TEST(numbers_do_not_depend_on_the_locale),
                                        CLI_TEST(statistics_are_json),
+/* The second Ctrl-C quits in the middle of a write, and leaves no half of a file. */
+static void a_second_interrupt_leaves_nothing_half_written(void **state) {
+    const place *p = *state;
+    const char *const arguments[] = {"render", SCENE, "--size", "2000x2000", "--spp", "1", "-v", "-o", "a.exr", NULL};
+    const struct timespec nap = {.tv_nsec = 20000000};
+    pid_t child = run_start(p, arguments);
+    assert_true(run_says(p, "render: "));
+    while (!files_in(p)) nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
+    kill(child, SIGINT);
+    nanosleep(&nap, NULL); /* equal signals that wait are one */
+    kill(child, SIGINT);
+    result r = run_wait(p, child);
+    assert_true(r.code == 130 || has_file(p, "a.exr"));
+    assert_int_equal(files_in(p), has_file(p, "a.exr"));
+    result_free(&r);
+}
+
+static void a_limit_of_file_sizes_is_an_error_like_any_other(void **state) {
+    const place *p = *state;
+    struct rlimit before, low = {1024, 1024}; /* for messages too */
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    low.rlim_max = before.rlim_max;
+    const char *const outputs[] = {"a.png", "a.exr", "a.hdr", "a.tif", "a.webp", "a.jpg"};
+    for (size_t i = 0; i < sizeof outputs / sizeof *outputs; i++) {
+        setrlimit(RLIMIT_FSIZE, &low);
+        result r = run(p, "render", SCENE, "--size", "256x256", "--spp", "1", "-q", "-o", outputs[i]);
+        setrlimit(RLIMIT_FSIZE, &before);
+        if (r.code != 1) fail_msg("%s: exit code %d, '%s'", outputs[i], r.code, r.err);
+        assert_non_null(strstr(r.err, "cannot be written: File too large"));
+        assert_int_equal(files_in(p), 0);
+        result_free(&r);
+    }
+}
+
                                        CLI_TEST(a_missed_goal_is_exit_code_4),
                                        CLI_TEST(a_budget_ends_the_render),
                                        CLI_TEST(strict_turns_warnings_into_failures),
                                        CLI_TEST(benchmarks_can_call_it),
                                        CLI_TEST(interrupted_renders_are_written),
-                                       CLI_TEST(ignored_interrupts_stay_ignored)};
+                                       CLI_TEST(ignored_interrupts_stay_ignored),
+                                       CLI_TEST(a_second_interrupt_leaves_nothing_half_written),
+                                       CLI_TEST(a_limit_of_file_sizes_is_an_error_like_any_other)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
