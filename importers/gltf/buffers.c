@@ -39,7 +39,7 @@ void blob_release(void *owned) {
 const kiln_bytes *blob_bytes(const gltf_blob *blob) { return &blob->bytes; }
 
 static bool fetch_file(gltf_reader *r, const char *uri, kiln_bytes *bytes, const kiln_where *where) {
-    char *path = uri_resolve(uri, r->folder, where, r->report);
+    char *path = uri_resolve(uri, r->folder, r->allow_outside, where, r->report);
     if (!path) return false;
     bool read = file_read(path, r->budget, bytes, where, r->report) && reader_reserve(r, bytes->size, where);
     free(path);

@@ -127,8 +127,8 @@ static uint64_t budget_of(const kiln_import_options *options) {
 
 bool gltf_import_memory(const char *name, const void *bytes, size_t size, const char *folder,
                         const kiln_import_options *options, kiln_scene *scene, kiln_report *report) {
-    gltf_reader r = {.folder = folder, .file = where_root(name), .report = report,
-                     .budget = budget_of(options), .scene = scene};
+    gltf_reader r = {.folder = folder, .allow_outside = options && options->allow_outside, .file = where_root(name),
+                     .report = report, .budget = budget_of(options), .scene = scene};
     kiln_bytes copy = {malloc(size + 1), size};
     if (!copy.data) return report_no_memory(report, "reading a glTF file");
     memcpy(copy.data, bytes, size);
@@ -138,7 +138,8 @@ bool gltf_import_memory(const char *name, const void *bytes, size_t size, const 
 
 bool gltf_import(const char *path, const kiln_import_options *options, kiln_scene *scene, kiln_report *report) {
     bool from_stdin = strcmp(path, "-") == 0;
-    gltf_reader r = {.file = where_root(from_stdin ? "standard input" : path), .report = report,
+    gltf_reader r = {.path = path, .allow_outside = options && options->allow_outside,
+                     .file = where_root(from_stdin ? "standard input" : path), .report = report,
                      .budget = budget_of(options), .scene = scene};
     kiln_bytes bytes;
     if (!file_read(path, r.budget, &bytes, from_stdin ? &r.file : NULL, report)) return false;

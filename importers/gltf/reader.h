@@ -19,7 +19,9 @@ typedef struct gltf_placement {
 } gltf_placement;
 
 typedef struct gltf_reader {
+    const char *path;   /* of the asset, "-" for standard input; NULL: it came from memory */
     const char *folder; /* of the asset, where relative URIs start; NULL: none */
+    bool allow_outside; /* URIs may leave the folder */
     kiln_where file;
     kiln_report *report;
     uint64_t budget; /* bytes that may still be allocated */
@@ -35,6 +37,7 @@ typedef struct gltf_reader {
     kiln_id *meshes;
     gltf_placement *placements; /* found by place_nodes, in the order of the hierarchy */
     size_t placement_count;
+    scene_node *nodes; /* of the scene's source; until gltf_link_nodes, mesh is that of the file */
 } gltf_reader;
 
 /* Takes bytes from the budget, or reports that there are not enough. */
@@ -59,6 +62,8 @@ bool gltf_add_image(gltf_reader *, int image, kiln_id *id);
 
 /* node.c: walks the scene; finds the placements of meshes, adds cameras and lights. */
 bool gltf_place_nodes(gltf_reader *);
+/* When the meshes are there: the nodes that the scene keeps for those who ask name them. */
+void gltf_link_nodes(gltf_reader *);
 /* mesh.c: adds the meshes that have placements. */
 bool gltf_add_meshes(gltf_reader *);
 /* instancing.c: adds the instances, those of EXT_mesh_gpu_instancing too. */

@@ -8,7 +8,9 @@
 
 #include "base/text.h"
 
-static const char stay_inside[] = "put the file beside the asset and refer to it by a relative path";
+static const char refer[] = "refer to a file beside the asset by a relative path",
+                  allow[] = "put the file beside the asset, or trust the asset with --allow-outside",
+                  pack[] = "pack the files into the glb, or give the asset by its path";
 
 static int hex_digit(char c) {
     if (c >= '0' && c <= '9') return c - '0';
@@ -47,25 +49,26 @@ static bool climbs(const char *path) {
     return false;
 }
 
-static bool refuse(const kiln_where *where, kiln_report *report, const char *why, const char *uri) {
-    return report_error(report, KILN_CODE_PATH_OUTSIDE, where, stay_inside, "%s: %.200s", why, uri);
+static bool refuse(const kiln_where *where, kiln_report *report, const char *remedy, const char *why,
+                   const char *uri) {
+    return report_error(report, KILN_CODE_PATH_OUTSIDE, where, remedy, "%s: %.200s", why, uri);
 }
 
-static bool check_path(const char *path, size_t length, const char *folder, const kiln_where *where,
-                       kiln_report *report) {
-    if (strlen(path) != length) return refuse(where, report, "a URI with a zero byte in it", path);
-    if (length == 0) return report_error(report, KILN_CODE_REFERENCE, where, stay_inside, "the URI is empty");
-    if (has_scheme(path)) return refuse(where, report, "kiln opens relative URIs alone, no other scheme", path);
+static bool check_path(const char *path, size_t length, const char *folder, bool allow_outside,
+                       const kiln_where *where, kiln_report *report) {
+    if (strlen(path) != length) return refuse(where, report, refer, "a URI with a zero byte in it", path);
+    if (length == 0) return report_error(report, KILN_CODE_REFERENCE, where, refer, "the URI is empty");
+    if (has_scheme(path)) return refuse(where, report, refer, "kiln opens paths alone, no other scheme", path);
+    if (!folder) return refuse(where, report, pack, "a glb on standard input has no folder to find files in", path);
+    if (allow_outside) return true;
     if (path[0] == '/' || path[0] == '\\')
-        return refuse(where, report, "an absolute path leaves the asset's folder", path);
-    if (climbs(path)) return refuse(where, report, "the URI leaves the asset's folder", path);
-    return folder || refuse(where, report, "a glb on standard input has no folder to find files in", path);
+        return refuse(where, report, allow, "an absolute path leaves the asset's folder", path);
+    return !climbs(path) || refuse(where, report, allow, "the URI leaves the asset's folder", path);
 }
 
 static char *join(const char *folder, const char *path) {
     kiln_text text = {0};
-    text_append(&text, folder);
-    text_append(&text, "/");
+    if (*path != '/') text_format(&text, "%s/", folder);
     text_append(&text, path);
     return text_take(&text);
 }
@@ -75,7 +78,7 @@ static char *find_file(const char *folder, const char *path) {
     char *name = join(folder, path);
     char *real = name ? realpath(name, NULL) : NULL;
     if (!real && name && errno == ENOENT && strchr(path, '\\')) {
-        for (char *c = name + strlen(folder); *c; c++)
+        for (char *c = name + strlen(name) - strlen(path); *c; c++)
             if (*c == '\\') *c = '/';
         real = realpath(name, NULL);
     }
@@ -91,7 +94,8 @@ static bool lies_inside(const char *file, const char *folder) {
     return strncmp(file, folder, length) == 0 && (file[length] == '/' || file[length] == '\0');
 }
 
-char *uri_resolve(const char *uri, const char *folder, const kiln_where *where, kiln_report *report) {
+char *uri_resolve(const char *uri, const char *folder, bool allow_outside, const kiln_where *where,
+                  kiln_report *report) {
     size_t length = strlen(uri);
     char *path = malloc(length + 1);
     if (!path) {
@@ -101,7 +105,7 @@ char *uri_resolve(const char *uri, const char *folder, const kiln_where *where, 
     size_t decoded = percent_decode(uri, length, path);
     path[decoded] = '\0';
     char *real_folder = NULL, *file = NULL;
-    if (check_path(path, decoded, folder, where, report)) {
+    if (check_path(path, decoded, folder, allow_outside, where, report)) {
         real_folder = realpath(*folder ? folder : ".", NULL);
         file = real_folder ? find_file(real_folder, path) : NULL;
         if (!file && (errno == ENOENT || errno == ENOTDIR))
@@ -110,8 +114,8 @@ char *uri_resolve(const char *uri, const char *folder, const kiln_where *where, 
         else if (!file)
             report_error(report, KILN_CODE_FILE_UNREADABLE, where, "check the path and its permissions",
                          "%.200s cannot be read: %s", path, strerror(errno));
-        else if (!lies_inside(file, real_folder)) {
-            refuse(where, report, "a symbolic link leaves the asset's folder", path);
+        else if (!allow_outside && !lies_inside(file, real_folder)) {
+            refuse(where, report, allow, "a symbolic link leaves the asset's folder", path);
             free(file);
             file = NULL;
         }

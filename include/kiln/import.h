@@ -12,6 +12,8 @@ extern "C" {
 
 typedef struct kiln_import_options {
     uint64_t memory_limit; /* bytes that a file may make kiln allocate; 0: three quarters of the machine's memory */
+    bool allow_outside;    /* URIs may lead out of the asset's folder: "..", absolute paths, links. For files that are
+                              trusted: one that is not could show what else the user may read */
 } kiln_import_options;
 
 /* Reads .gltf and .glb; path "-" is a glb on standard input. The scene is not yet committed. On failure *scene is

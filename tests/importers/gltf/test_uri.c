@@ -65,10 +65,10 @@ static int tear_down(void **state) {
     return rmdir(root);
 }
 
-static void leads_to(const char *uri, const char *name) {
+static void leads_to_with(bool allow_outside, const char *uri, const char *name) {
     kiln_report *report = kiln_report_create();
     kiln_where where = where_root("a.gltf");
-    char *path = uri_resolve(uri, folder, &where, report);
+    char *path = uri_resolve(uri, folder, allow_outside, &where, report);
     if (!path) print_report(report);
     assert_non_null(path);
     char expected[160], *real;
@@ -80,10 +80,12 @@ static void leads_to(const char *uri, const char *name) {
     kiln_report_destroy(report);
 }
 
+static void leads_to(const char *uri, const char *name) { leads_to_with(false, uri, name); }
+
 static void refused(const char *uri, kiln_code code, const char *what) {
     kiln_report *report = kiln_report_create();
     kiln_where where = where_root("a.gltf");
-    char *path = uri_resolve(uri, folder, &where, report);
+    char *path = uri_resolve(uri, folder, false, &where, report);
     if (path) print_message("%s leads to %s\n", uri, path);
     assert_null(path);
     assert_message(report, KILN_ERROR, code, "a.gltf", what);
@@ -143,12 +145,49 @@ static void says_what_is_missing(void **state) {
     free(long_name);
 }
 
+/* For assets that are trusted. A scheme stays one, and what does not exist is missing. */
+static void leaves_the_folder_where_that_is_allowed(void **state) {
+    (void)state;
+    char absolute[160];
+    in_root(absolute, "secret.bin");
+    static const struct { const char *uri, *name; } rows[] = {{"a.bin", "asset/a.bin"},
+                                                              {"../secret.bin", "secret.bin"},
+                                                              {"..%2Fasset2/x.bin", "asset2/x.bin"},
+                                                              {"..\\asset2\\x.bin", "asset2/x.bin"},
+                                                              {"link.bin", "secret.bin"}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) leads_to_with(true, rows[i].uri, rows[i].name);
+    leads_to_with(true, absolute, "secret.bin");
+    kiln_where where = where_root("a.gltf");
+    const char *const bad[] = {"file:///etc/passwd", "../missing.bin", ""};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        kiln_report *report = kiln_report_create();
+        assert_null(uri_resolve(bad[i], folder, true, &where, report));
+        assert_int_equal(kiln_report_exit_code(report), 3);
+        kiln_report_destroy(report);
+    }
+}
+
+/* The way out is named where there is one. */
+static void says_how_to_leave_the_folder(void **state) {
+    (void)state;
+    const char *const uris[] = {"../secret.bin", "/secret.bin", "link.bin"};
+    for (size_t i = 0; i < sizeof uris / sizeof *uris; i++) {
+        kiln_report *report = kiln_report_create();
+        kiln_where where = where_root("a.gltf");
+        assert_null(uri_resolve(uris[i], folder, false, &where, report));
+        assert_non_null(strstr(kiln_report_message(report, 0).remedy, "--allow-outside"));
+        kiln_report_destroy(report);
+    }
+}
+
 static void needs_a_folder(void **state) {
     (void)state;
     kiln_report *report = kiln_report_create();
     kiln_where where = where_root("standard input");
-    assert_null(uri_resolve("a.bin", NULL, &where, report));
-    assert_message(report, KILN_ERROR, KILN_CODE_PATH_OUTSIDE, "standard input", "no folder");
+    for (int allow = 0; allow < 2; allow++) {
+        assert_null(uri_resolve("a.bin", NULL, allow, &where, report));
+        assert_message(report, KILN_ERROR, KILN_CODE_PATH_OUTSIDE, "standard input", "no folder");
+    }
     kiln_report_destroy(report);
 }
 
@@ -205,6 +244,7 @@ static void round_trips_base64(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(finds_files_inside), cmocka_unit_test(stays_inside),      cmocka_unit_test(says_what_is_missing),
+        cmocka_unit_test(leaves_the_folder_where_that_is_allowed), cmocka_unit_test(says_how_to_leave_the_folder),
         cmocka_unit_test(needs_a_folder),     cmocka_unit_test(decodes_data_uris), cmocka_unit_test(round_trips_base64),
     };
     return cmocka_run_group_tests_name("uri", tests, set_up, tear_down);
