@@ -24,7 +24,8 @@ typedef struct cli_args {
 
 typedef struct cli_command {
     const char *name, *argument, *summary;
-    const char *const *groups; /* of job options that it takes, by heading, NULL at the end; NULL: all */
+    bool renders;      /* takes all options of a job */
+    unsigned takes;    /* or those that have one of these bits in option_row.also */
     const char *talk; /* names of talk options that it takes, between spaces */
     const char *examples;
     int (*run)(const struct cli_command *, cli_args *, kiln_report *); /* the exit code */

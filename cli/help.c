@@ -114,13 +114,10 @@ static int run_version(const cli_command *command, cli_args *args, kiln_report *
     return done ? 0 : kiln_report_exit_code(report);
 }
 
-static const char *const no_groups[] = {NULL};
-
 const cli_command cli_help = {.name = "help",
                               .argument = "COMMAND",
                               .summary = "this text, or the options of a command",
-                              .groups = no_groups,
                               .talk = " help ",
                               .run = run_help};
-const cli_command cli_version = {.name = "version", .summary = "the version of kiln", .groups = no_groups,
-                                 .talk = " help ", .run = run_version};
+const cli_command cli_version = {
+    .name = "version", .summary = "the version of kiln", .talk = " help ", .run = run_version};

@@ -2,6 +2,7 @@
 
 #include "cli/cli.h"
 #include "cli/json_text.h"
+#include "job/options.h"
 
 static void print_names(kiln_text *out, const char *heading, const json_t *names) {
     const json_t *name;
@@ -73,12 +74,10 @@ static int run(const cli_command *command, cli_args *args, kiln_report *report) 
     return kiln_report_exit_code(report);
 }
 
-static const char *const groups[] = {"Colour", "Machine", NULL};
-
 const cli_command cli_info = {
     .name = "info",
     .summary = "versions, machine, colour config, formats",
-    .groups = groups,
+    .takes = JOB_INFO,
     .talk = " json help ",
     .examples = "  kiln info\n  kiln info --ocio /show/config.ocio\n  kiln info --json | jq .versions",
     .run = run};

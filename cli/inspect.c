@@ -3,6 +3,7 @@
 #include "cli/cli.h"
 #include "cli/inspect_text.h"
 #include "cli/log.h"
+#include "job/options.h"
 
 static int run(const cli_command *command, cli_args *args, kiln_report *report) {
     log_set_level(args->talk.quiet ? LOG_ERRORS : LOG_NORMAL);
@@ -23,14 +24,11 @@ static int run(const cli_command *command, cli_args *args, kiln_report *report) 
     return kiln_report_exit_code(report);
 }
 
-/* What changes the answer. */
-static const char *const groups[] = {"Picture", "Camera", "Light", "Surfaces", "Machine", NULL};
-
 const cli_command cli_inspect = {
     .name = "inspect",
     .argument = "SCENE",
     .summary = "what is in a file, and what kiln would make of it",
-    .groups = groups,
+    .takes = JOB_INSPECT,
     .talk = " json quiet verbose help ",
     .examples = "  kiln inspect helmet.glb\n"
                 "  kiln inspect helmet.glb --json | jq .bounds.size\n"

@@ -16,10 +16,7 @@ typedef struct parser {
 } parser;
 
 bool cli_takes_job(const cli_command *c, const option_row *row) {
-    if (!c->groups) return true;
-    for (const char *const *group = c->groups; *group; group++)
-        if (strcmp(*group, row->group) == 0) return true;
-    return false;
+    return c->renders || row->also & c->takes;
 }
 
 bool cli_takes_talk(const cli_command *c, const option_row *row) {

@@ -132,6 +132,7 @@ const cli_command cli_render = {
     .name = "render",
     .argument = "SCENE",
     .summary = "one picture of a .gltf or .glb file; '-' reads a glb from stdin",
+    .renders = true,
     .talk = " json quiet verbose progress help ",
     .examples = "  kiln render helmet.glb                                  helmet.png, framed and lit\n"
                 "  kiln render helmet.glb --env hall.hdr -o a.png -o a.exr lit by a picture, two files\n"

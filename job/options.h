@@ -57,9 +57,13 @@ typedef struct job_options {
     uint32_t aovs; /* bits 1 << kiln_aov */
     double exposure;
     const char *display, *view, *look, *ocio, *working_space;
+    bool allow_outside;
     const char *embree_config, *stats;
     bool strict;
 } job_options;
+
+/* What option_row.also means here. */
+enum { JOB_INSPECT = 1, JOB_INFO = 2 };
 
 extern const option_table job_option_table;
 
@@ -83,6 +87,6 @@ bool job_rules_choose(const job_options *, job_rules *, kiln_report *);
 
 /* Kinds of single options; option_values.c. */
 extern const option_kind option_size, option_crop, option_percent, option_duration, option_filter, option_roulette,
-    option_orbit, option_focus, option_background, option_subdivide, option_aovs;
+    option_orbit, option_focus, option_background, option_subdivide, option_aovs, option_embree;
 
 #endif

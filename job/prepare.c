@@ -64,7 +64,8 @@ bool run_color(job_run *r) {
 
 bool run_import(job_run *r) {
     r->owns_scene = true;
-    return kiln_import(r->source, NULL, &r->scene, r->report);
+    kiln_import_options options = {.allow_outside = r->options->allow_outside};
+    return kiln_import(r->source, &options, &r->scene, r->report);
 }
 
 bool run_camera(job_run *r) { return view_choose(r->options, r->scene, &r->view, r->report); }

@@ -31,6 +31,7 @@ static void wrong_usage_is_one_line_and_exit_code_2(void **state) {
     assert_refused(p, 2, "no rule", "render", SCENE, "--noise", "0");
     assert_refused(p, 2, "--crop: 0,0,99,4", "render", SCENE, "--size", "8x8", "--crop", "0,0,99,4");
     assert_refused(p, 2, "standard output", "render", SCENE, "--json", "-o", "-");
+    assert_refused(p, 2, "'isa=avx9' is not", "render", SCENE, "--embree-config", "isa=avx9");
     assert_refused(p, 2, "view \"Filmic\" does not exist", "render", SCENE, "--view", "Filmic");
     assert_refused(p, 2, "display \"CRT\" does not exist", "render", SCENE, "--display", "CRT");
     assert_refused(p, 2, "no camera 'Z'", "render", SCENE, "--camera", "Z");
@@ -41,9 +42,29 @@ static void nothing_is_promised_that_is_not_there(void **state) {
     const char *const names[] = {"--shutter", "--at",           "--frames",         "--fps",     "--animation",
                                  "--variant", "--ground",       "--caustics",       "--effects", "--checkpoint",
                                  "--resume",  "--denoise",      "--clamp-indirect", "--replay",  "--usd-python",
-                                 "--sandbox", "--allow-outside"};
+                                 "--sandbox"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         assert_refused(*state, 2, "unknown option", "render", SCENE, names[i], "1");
+}
+
+/* A command refuses what it would not look at. */
+static void options_belong_to_commands(void **state) {
+    const place *p = *state;
+    static const struct { const char *option; bool inspects, informs; } rows[] = {
+        {"--output=a.png", false, false}, {"--stats=s.json", false, false},   {"--spp=1", false, false},
+        {"--exposure=1", false, false},   {"--background=env", false, false}, {"--embree-config=isa=avx2", false, false},
+        {"--strict", true, false},        {"--size=8x8", true, false},        {"--orbit=0,0", true, false},
+        {"--threads=1", true, true},      {"--view=Raw", false, true},        {"--ocio=", false, true}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (rows[i].inspects) assert_runs(p, "inspect", SCENE, rows[i].option);
+        else assert_refused(p, 2, "unknown option", "inspect", SCENE, rows[i].option);
+        if (rows[i].informs) assert_runs(p, "info", rows[i].option);
+        else assert_refused(p, 2, "unknown option", "info", rows[i].option);
+    }
+    result r = run(p, "info", "--help");
+    assert_null(strstr(r.out, "--exposure"));
+    assert_null(strstr(r.out, "--stats"));
+    result_free(&r);
 }
 
 /* Every spelling of an option means the same; a value may begin with a minus. */
@@ -119,6 +140,7 @@ static void the_version_is_told(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {CLI_TEST(wrong_usage_is_one_line_and_exit_code_2),
                                        CLI_TEST(nothing_is_promised_that_is_not_there),
+                                       CLI_TEST(options_belong_to_commands),
                                        CLI_TEST(options_have_several_spellings),
                                        CLI_TEST(the_command_line_goes_before_the_environment),
                                        CLI_TEST(help_is_on_standard_output),
