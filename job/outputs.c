@@ -5,8 +5,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "base/file.h"
-
 typedef struct suffix_row {
     const char *suffix;
     output_kind kind;
@@ -40,7 +38,7 @@ const char *output_format_name(const char *path) {
     return row ? row->format : "unknown";
 }
 
-static bool check(const job_options *o, const output_plan *plan, const char *path, kiln_report *report) {
+static bool check(const job_options *o, const char *path, kiln_report *report) {
     const suffix_row *row = find_suffix(path);
     kiln_where where = where_root(path);
     if (!row)
@@ -53,10 +51,6 @@ static bool check(const job_options *o, const output_plan *plan, const char *pat
         return report_error(report, KILN_CODE_USAGE, &where,
                             "write .png, .webp, .tif or .exr, or give --background a colour",
                             "%s cannot be transparent", row->format);
-    for (uint32_t i = 0; i < plan->count; i++)
-        if (strcmp(plan->items[i].path, path) == 0)
-            return report_error(report, KILN_CODE_USAGE, &where, "give every output a name of its own",
-                                "two outputs have this name");
     return true;
 }
 
@@ -70,7 +64,7 @@ static bool add(const job_options *o, output_plan *plan, const char *pattern, co
     }
     char *path = text_take(&text);
     if (!path) return report_no_memory(report, "naming outputs");
-    if (!check(o, plan, path, report)) {
+    if (!check(o, path, report)) {
         free(path);
         return false;
     }
@@ -102,6 +96,37 @@ bool outputs_any(const output_plan *plan, output_kind kind) {
     for (uint32_t i = 0; i < plan->count; i++)
         if (plan->items[i].kind == kind) return true;
     return false;
+}
+
+/* The path of output `index`, and of the statistics behind the last one; NULL: there are none. */
+static const char *path_at(const output_plan *plan, const char *stats, uint32_t index) {
+    return index < plan->count ? plan->items[index].path : stats;
+}
+
+bool outputs_check_distinct(const output_plan *plan, const char *stats, kiln_report *report) {
+    for (uint32_t i = 1; i <= plan->count; i++) {
+        const char *path = path_at(plan, stats, i);
+        for (uint32_t k = 0; path && k < i; k++) {
+            if (!file_same_target(path, plan->items[k].path)) continue;
+            kiln_where where = where_root(path);
+            return report_error(report, KILN_CODE_USAGE, &where, "give each a name of its own",
+                                "%s is this file too", i < plan->count ? "another output" : "the picture's output");
+        }
+    }
+    return true;
+}
+
+bool outputs_check_input(const output_plan *plan, const char *stats, file_identity input, const char *reader,
+                         kiln_report *report) {
+    for (uint32_t i = 0; i <= plan->count; i++) {
+        const char *path = path_at(plan, stats, i);
+        if (!path || strcmp(path, "-") == 0 || !file_same(file_identify(path), input)) continue;
+        kiln_where where = where_root(path);
+        return report_error(report, KILN_CODE_USAGE, &where,
+                            i < plan->count ? "give another name with -o" : "give --stats another name",
+                            "this would overwrite a file that %s", reader);
+    }
+    return true;
 }
 
 static bool is_special(const char *path) {

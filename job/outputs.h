@@ -2,6 +2,7 @@
 #ifndef KILN_JOB_OUTPUTS_H
 #define KILN_JOB_OUTPUTS_H
 
+#include "base/file.h"
 #include "job/options.h"
 #include "job/template.h"
 
@@ -27,6 +28,13 @@ const char *output_format_name(const char *path);
 bool outputs_plan(const job_options *, const template_values *, output_plan *, kiln_report *);
 void outputs_free(output_plan *);
 bool outputs_any(const output_plan *, output_kind);
+
+/* No two of the outputs and the statistics (NULL: none) are one file under two names. */
+bool outputs_check_distinct(const output_plan *, const char *stats, kiln_report *);
+
+/* None of them is this file that the job reads. reader completes a message: "a file that the asset consists of". */
+bool outputs_check_input(const output_plan *, const char *stats, file_identity input, const char *reader,
+                         kiln_report *);
 
 /* Tries whether every file, and the one for statistics, can be written. Leaves nothing behind. */
 bool outputs_try(const output_plan *, const char *stats, kiln_report *);

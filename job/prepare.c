@@ -70,10 +70,23 @@ bool run_import(job_run *r) {
 
 bool run_camera(job_run *r) { return view_choose(r->options, r->scene, &r->view, r->report); }
 
+/* A render never overwrites what it is made from. */
+static bool spare_inputs(const job_run *r) {
+    const job_options *o = r->options;
+    const scene_source *source = &r->scene->source;
+    const char *ocio = o->ocio ? o->ocio : getenv("OCIO");
+    for (size_t i = 0; i < source->file_count; i++)
+        if (!outputs_check_input(&r->outputs, o->stats, source->files[i], "the asset consists of", r->report))
+            return false;
+    return (!o->env || outputs_check_input(&r->outputs, o->stats, file_identify(o->env), "--env names", r->report)) &&
+           (!ocio || outputs_check_input(&r->outputs, o->stats, file_identify(ocio), "colours come from", r->report));
+}
+
 bool run_outputs(job_run *r) {
     template_values values = {r->asset_name, r->view.name, "default", 0};
     return outputs_plan(r->options, &values, &r->outputs, r->report) &&
-           outputs_try(&r->outputs, r->options->stats, r->report);
+           outputs_check_distinct(&r->outputs, stats, r->report) && spare_inputs(r) &&
+           outputs_try(&r->outputs, stats, r->report);
 }
 
 bool run_subdivide(job_run *r) {

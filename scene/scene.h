@@ -6,6 +6,7 @@
 #define KILN_SCENE_SCENE_H
 
 #include "base/arena.h"
+#include "base/file.h"
 #include "base/mat.h"
 #include "base/report.h"
 #include "kiln/scene.h"
@@ -26,10 +27,24 @@ typedef struct scene_extension {
     const char *support; /* "read", "left out: highlights are round", … */
 } scene_extension;
 
+/* A place in the file's hierarchy; parents stand before their children, which follow them depth first. */
+typedef struct scene_node {
+    const char *name;
+    uint32_t parent; /* in the same list; SCENE_NO_PARENT: a root */
+    kiln_id mesh, camera, light; /* 0: none, or left out of the scene, as what is hidden is */
+    mat4 local; /* in its parent's frame */
+} scene_node;
+
+#define SCENE_NO_PARENT UINT32_MAX
+
 typedef struct scene_source {
     const char *format, *generator, *copyright; /* "glTF 2.0"; NULL: the scene came from a program, or unknown */
     const scene_extension *extensions;
     uint32_t extension_count;
+    const scene_node *nodes;
+    uint32_t node_count;
+    const file_identity *files; /* that the asset consists of, whether or not all were read */
+    size_t file_count;
 } scene_source;
 
 struct kiln_scene {

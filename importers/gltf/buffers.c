@@ -96,6 +96,37 @@ static bool load(gltf_reader *r, size_t index) {
                         "byteLength is %llu, but there are only %zu bytes", (unsigned long long)source->byte_length, size);
 }
 
+/* The file that a source names, if it does, and if that exists: who reads it reports what is wrong. */
+static file_identity identify(gltf_reader *r, const gltf_source *source, kiln_report *unread) {
+    enum { URI_LONGEST = 3 * 4096 }; /* no path is longer, with each byte as %XX */
+    size_t length = source->uri.at ? (size_t)(source->uri.end - source->uri.at) - 2 : 0;
+    if (!length || length > URI_LONGEST || uri_is_data(source->uri.at + 1, length)) return (file_identity){0};
+    char *uri = json_text(source->uri, &r->arena);
+    char *path = uri ? uri_resolve(uri, r->folder, r->allow_outside, &r->file, unread) : NULL;
+    file_identity file = path ? file_identify(path) : (file_identity){0};
+    free(path);
+    return file;
+}
+
+bool buffers_list_files(gltf_reader *r) {
+    const gltf_sources *lists[] = {&r->envelope.buffers, &r->envelope.images};
+    kiln_report *unread = kiln_report_create();
+    file_identity *files =
+        ARENA_ARRAY(&r->scene->arena, file_identity, 1 + lists[0]->count + lists[1]->count);
+    bool done = unread && files;
+    size_t count = 0;
+    if (done && r->path) files[count++] = file_identify(r->path);
+    for (int l = 0; done && l < 2; l++)
+        for (size_t i = 0; i < lists[l]->count; i++) {
+            file_identity file = identify(r, &lists[l]->items[i], unread);
+            if (file.known) files[count++] = file;
+        }
+    r->scene->source.files = files;
+    r->scene->source.file_count = count;
+    kiln_report_destroy(unread);
+    return done || report_no_memory(r->report, "reading a glTF file");
+}
+
 bool buffers_load(gltf_reader *r) {
     size_t count = r->envelope.buffers.count;
     r->buffers = reader_array(r, count, sizeof *r->buffers, &r->file);

@@ -18,6 +18,8 @@ typedef struct gltf_buffer {
 } gltf_buffer;
 
 struct gltf_reader;
+/* Tells the scene which files the asset consists of, those too that nothing in it uses. */
+bool buffers_list_files(struct gltf_reader *);
 /* Loads every buffer of the envelope: the glb's binary chunk in place, data URIs, files. */
 bool buffers_load(struct gltf_reader *);
 void buffers_free(struct gltf_reader *);

@@ -41,7 +41,7 @@ static bool keep_source(gltf_reader *r, json_value root) {
     scene_source *source = &r->scene->source;
     source->format = "glTF 2.0";
     envelope_read_asset(root, &r->scene->arena, &source->generator, &source->copyright);
-    return extensions_list(&r->envelope, &r->scene->arena, source, r->report);
+    return extensions_list(&r->envelope, &r->scene->arena, source, r->report) && buffers_list_files(r);
 }
 
 static bool parse_document(gltf_reader *r) {
@@ -90,8 +90,10 @@ static void note_motion(const gltf_reader *r) {
 }
 
 static bool build_scene(gltf_reader *r) {
-    return make_tables(r) && gltf_check_document(r) && gltf_place_nodes(r) && gltf_add_materials(r) &&
-           gltf_add_meshes(r) && gltf_add_instances(r);
+    bool built = make_tables(r) && gltf_check_document(r) && gltf_place_nodes(r) && gltf_add_materials(r) &&
+                 gltf_add_meshes(r) && gltf_add_instances(r);
+    if (built) gltf_link_nodes(r);
+    return built;
 }
 
 static bool read_all(gltf_reader *r) {
@@ -142,7 +144,7 @@ bool gltf_import(const char *path, const kiln_import_options *options, kiln_scen
                      .file = where_root(from_stdin ? "standard input" : path), .report = report,
                      .budget = budget_of(options), .scene = scene};
     kiln_bytes bytes;
-    if (!file_read(path, r.budget, &bytes, from_stdin ? &r.file : NULL, report)) return false;
+    if (!file_read(path, r.budget, &bytes, NULL, report)) return false;
     char *folder = from_stdin ? NULL : strndup(path, (size_t)(path_base(path) - path));
     if (!from_stdin && !folder) {
         file_free(&bytes);

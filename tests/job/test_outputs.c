@@ -44,10 +44,52 @@ static void unknown_suffixes_are_refused(void **state) {
     assert_refused(*state, "no format");
 }
 
-static void two_outputs_cannot_have_one_name(void **state) {
-    give(*state, "output", "car.png");
-    give(*state, "output", "{name}.png");
-    assert_refused(*state, "two outputs");
+/* By folder and name, however they are spelled; statistics count. */
+static void outputs_are_distinct(void **state) {
+    fixture *f = *state;
+    static const struct { const char *outputs[2], *stats, *says; } rows[] = {
+        {{"car.png", "{name}.png"}, NULL, "another output is this file"},
+        {{"car.png", "./car.png"}, "s.json", "another output is this file"},
+        {{"-", "-"}, NULL, "another output is this file"},
+        {{"a.png", "b.png"}, "./b.png", "the picture's output is this file"},
+        {{"a.png", "b.png"}, "c.png", NULL}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        output_plan p;
+        job_options_free(&f->options);
+        assert_done(f, job_options_init(&f->options, f->report));
+        for (int k = 0; k < 2; k++) give(f, "output", rows[i].outputs[k]);
+        assert_done(f, plan(f, &p));
+        kiln_report_clear(f->report);
+        assert_int_equal(outputs_check_distinct(&p, rows[i].stats, f->report), !rows[i].says);
+        assert_true(!rows[i].says || says(f->report, rows[i].says));
+        assert_int_equal(kiln_report_exit_code(f->report), rows[i].says ? 2 : 0);
+        outputs_free(&p);
+    }
+}
+
+static void what_is_read_is_not_written(void **state) {
+    fixture *f = *state;
+    char input[256], link[256], other[256];
+    output_plan p;
+    assert_true(file_replace(path_in(f, "a.png", input), "a", 1, f->report));
+    assert_int_equal(symlink("a.png", path_in(f, "l.png", link)), 0);
+    path_in(f, "b.png", other);
+    file_identity read = file_identify(input);
+    give(f, "output", other);
+    assert_done(f, plan(f, &p));
+    assert_done(f, outputs_check_input(&p, NULL, read, "the asset consists of", f->report));
+    assert_done(f, outputs_check_input(&p, "-", read, "the asset consists of", f->report));
+    assert_false(outputs_check_input(&p, link, read, "the asset consists of", f->report));
+    assert_true(says(f->report, "--stats"));
+    outputs_free(&p);
+    kiln_report_clear(f->report);
+    give(f, "output", link);
+    assert_done(f, plan(f, &p));
+    assert_false(outputs_check_input(&p, NULL, read, "the asset consists of", f->report));
+    assert_true(says(f->report, "overwrite a file that the asset consists of"));
+    assert_true(says(f->report, "with -o"));
+    assert_int_equal(kiln_report_exit_code(f->report), 2);
+    outputs_free(&p);
 }
 
 static void opaque_formats_cannot_be_transparent(void **state) {
@@ -105,7 +147,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {JOB_TEST(the_default_is_named_by_the_asset),
                                        cmocka_unit_test(suffixes_choose_the_format),
                                        JOB_TEST(unknown_suffixes_are_refused),
-                                       JOB_TEST(two_outputs_cannot_have_one_name),
+                                       JOB_TEST(outputs_are_distinct),
+                                       JOB_TEST(what_is_read_is_not_written),
                                        JOB_TEST(opaque_formats_cannot_be_transparent),
                                        JOB_TEST(layers_need_a_file_that_holds_them),
                                        JOB_TEST(trying_leaves_nothing_behind),
