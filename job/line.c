@@ -28,10 +28,13 @@ bool run_film(job_run *r) {
                             "%u,%u,%u,%u is not a part of %u x %u pixels", o->crop[0], o->crop[1], o->crop[2],
                             o->crop[3], r->view.width, r->view.height);
     }
-    if (machine && bytes > machine / 4 * 3)
-        return report_error(r->report, KILN_CODE_LIMIT, NULL, "render a smaller picture, or crops of it",
+    if (machine && bytes > machine / 4 * 3) {
+        kiln_where where = where_root("--size");
+        return report_error(r->report, job_given(o, size) ? KILN_CODE_USAGE : KILN_CODE_MEMORY, &where,
+                            "render a smaller picture, or crops of it",
                             "%u x %u pixels need %.1f GB, and the machine has %.1f GB", r->view.width, r->view.height,
                             (double)bytes * 1e-9, (double)machine * 1e-9);
+    }
     return kiln_film_create(&r->film_desc, &r->film, r->report);
 }
 
@@ -154,7 +157,7 @@ bool run_write(job_run *r) {
     job_metadata metadata;
     if (!metadata_make(&metadata, r)) return report_no_memory(r->report, "writing pictures");
     picture p = {.film = r->film, .color = r->color, .view = r->display,
-                 .transparent = b->kind == KILN_BACKGROUND_TRANSPARENT,
+                 .transparent = b->kind == KILN_BACKGROUND_TRANSPARENT, .layers = r->options->aovs,
                  .background = b->kind == KILN_BACKGROUND_COLOR ? b->rgb : NULL,
                  .threads = r->options->threads,
                  .text = metadata.text, .text_count = metadata.text_count,

@@ -92,7 +92,7 @@ static bool write_hdr(const picture *p, const char *path, kiln_report *report) {
     bool done = image_alloc(&image, width_of(&d), height_of(&d), 3, KILN_PIXELS_F32, report);
     if (done) {
         picture_beauty(p, alpha, image.pixels);
-        done = image_write_hdr(path, &image, report);
+        done = image_write_hdr(path, &image, p->text, p->text_count, report);
         image_free(&image);
     }
     free(alpha);
@@ -113,7 +113,7 @@ bool picture_write(const picture *p, const char *path, kiln_report *report) {
 
 bool kiln_film_write(const kiln_film *film, const kiln_color *color, const kiln_view *view, const char *path,
                      kiln_report *report) {
-    picture p = {.film = film, .color = color, .view = view,
-                 .transparent = kiln_film_describe(film).aovs >> KILN_AOV_ALPHA & 1};
+    uint32_t aovs = kiln_film_describe(film).aovs;
+    picture p = {.film = film, .color = color, .view = view, .layers = aovs, .transparent = aovs >> KILN_AOV_ALPHA & 1};
     return picture_write(&p, path, report);
 }

@@ -10,6 +10,7 @@ typedef struct picture {
     const kiln_color *color;
     const kiln_view *view;
     bool transparent;          /* the film's alpha is the picture's */
+    uint32_t layers;           /* of EXR files: bits 1 << kiln_aov of what the film holds */
     const uint8_t *background; /* RGB that the display shows where alpha is not 1; NULL: none */
     float background_linear[3]; /* the same in the working space */
     uint32_t threads;          /* 0: all */

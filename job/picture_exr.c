@@ -58,6 +58,7 @@ static void add_layers(const picture *p, assembly *a) {
     for (int i = 0; i < KILN_AOV_COUNT; i++) {
         if (!a->aovs[i]) continue;
         bool is_picture = i == KILN_AOV_ALPHA && premultiplied;
+        if (!is_picture && !(p->layers & 1u << i)) continue; /* it was only needed to put a colour behind */
         for (uint32_t k = 0, n = channels_of(i); k < n; k++)
             add(a, is_picture ? "A" : layers[i].channels[k], a->aovs[i] + k, n, layers[i].full);
     }

@@ -132,7 +132,7 @@ static void outputs_that_cannot_be_written(void **state) {
 }
 
 static void pictures_that_no_memory_holds(void **state) {
-    assert_refused(*state, 3, "the machine has", "render", PAIR("unlit_a"), "--size", "65536x65536");
+    assert_refused(*state, 2, "--size: 65536 x 65536 pixels need", "render", PAIR("unlit_a"), "--size", "65536x65536");
 }
 
 /* The message is one line, whatever the names in the file are. */

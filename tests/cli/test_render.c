@@ -149,13 +149,27 @@ static void backgrounds_are_what_was_asked_for(void **state) {
     }
 }
 
-static void holds_text(const place *p, const char *file, const char *text) {
+static bool has_text(const place *p, const char *file, const char *text) {
     size_t size, length = strlen(text);
     unsigned char *bytes = read_file(p, file, &size);
     bool found = false;
     for (size_t i = 0; bytes && !found && i + length <= size; i++) found = memcmp(bytes + i, text, length) == 0;
-    if (!found) fail_msg("%s does not say '%s'", file, text);
     free(bytes);
+    return found;
+}
+
+static void holds_text(const place *p, const char *file, const char *text) {
+    if (!has_text(p, file, text)) fail_msg("%s does not say '%s'", file, text);
+}
+
+/* A coverage that a background needs is no layer that anybody asked for. */
+static void layers_are_those_that_were_asked_for(void **state) {
+    const place *p = *state;
+    assert_runs(p, "render", SCENE, "--size", "8x8", "--spp", "1", "--background", "#ff8000", "-o", "a.exr");
+    assert_false(has_text(p, "a.exr", "alpha.A"));
+    assert_runs(p, "render", SCENE, "--size", "8x8", "--spp", "1", "--background", "#ff8000", "-o", "a.exr", "--aov",
+                "alpha");
+    assert_true(has_text(p, "a.exr", "alpha.A"));
 }
 
 static void files_say_how_they_were_made(void **state) {
@@ -284,20 +298,6 @@ static void ignored_interrupts_stay_ignored(void **state) {
     result_free(&r);
 }
 
-int main(void) {
-    const struct CMUnitTest tests[] = {CLI_TEST(the_default_output_is_here_and_named_by_the_asset),
-                                       CLI_TEST(quiet_is_quiet),
-                                       CLI_TEST(progress_in_a_file_is_lines),
-                                       CLI_TEST(a_picture_goes_through_a_pipe),
-                                       CLI_TEST(a_glb_comes_from_standard_input),
-                                       CLI_TEST(templates_are_filled_in),
-                                       CLI_TEST(threads_and_runs_change_no_bit),
-                                       CLI_TEST(a_crop_is_that_part_of_the_whole),
-                                       CLI_TEST(backgrounds_are_what_was_asked_for),
-                                       CLI_TEST(files_say_how_they_were_made),
-                                       CLI_TEST(pngs_are_reproducible),
-                                       CLI_TEST(numbers_do_not_depend_on_the_locale),
-                                       CLI_TEST(statistics_are_json),
 /* The second Ctrl-C quits in the middle of a write, and leaves no half of a file. */
 static void a_second_interrupt_leaves_nothing_half_written(void **state) {
     const place *p = *state;
@@ -332,6 +332,21 @@ static void a_limit_of_file_sizes_is_an_error_like_any_other(void **state) {
     }
 }
 
+int main(void) {
+    const struct CMUnitTest tests[] = {CLI_TEST(the_default_output_is_here_and_named_by_the_asset),
+                                       CLI_TEST(quiet_is_quiet),
+                                       CLI_TEST(progress_in_a_file_is_lines),
+                                       CLI_TEST(a_picture_goes_through_a_pipe),
+                                       CLI_TEST(a_glb_comes_from_standard_input),
+                                       CLI_TEST(templates_are_filled_in),
+                                       CLI_TEST(threads_and_runs_change_no_bit),
+                                       CLI_TEST(a_crop_is_that_part_of_the_whole),
+                                       CLI_TEST(backgrounds_are_what_was_asked_for),
+                                       CLI_TEST(layers_are_those_that_were_asked_for),
+                                       CLI_TEST(files_say_how_they_were_made),
+                                       CLI_TEST(pngs_are_reproducible),
+                                       CLI_TEST(numbers_do_not_depend_on_the_locale),
+                                       CLI_TEST(statistics_are_json),
                                        CLI_TEST(a_missed_goal_is_exit_code_4),
                                        CLI_TEST(a_budget_ends_the_render),
                                        CLI_TEST(strict_turns_warnings_into_failures),
