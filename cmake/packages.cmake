@@ -6,7 +6,7 @@ find_package(JPEG REQUIRED)
 find_package(TIFF REQUIRED)
 find_package(OpenEXR CONFIG REQUIRED)
 find_package(embree CONFIG REQUIRED) # 3 on Debian 12, 4 on Debian 13: render/accel/embree.h absorbs the difference
-pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
+pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp libwebpmux)
 pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
 pkg_check_modules(TINYGLTF REQUIRED IMPORTED_TARGET tinygltf)
 pkg_check_modules(OCIO REQUIRED IMPORTED_TARGET OpenColorIO)

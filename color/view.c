@@ -84,7 +84,7 @@ static bool describe(kiln_view *view, const kiln_view_options *options, kiln_rep
     kiln_text text = {0};
     text_format(&text, "display %s, view %s", options->display, options->view);
     if (options->look) text_format(&text, ", look %s", *options->look ? options->look : "none");
-    if (options->exposure != 0) text_format(&text, ", exposure %+.6g", options->exposure);
+    text_format(&text, ", exposure %+.6g", options->exposure);
     view->description = text.data ? arena_string(&view->arena, text.data) : NULL;
     text_free(&text);
     return view->description || report_no_memory(report, "preparing a view");

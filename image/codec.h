@@ -2,6 +2,7 @@
 #ifndef KILN_IMAGE_CODEC_H
 #define KILN_IMAGE_CODEC_H
 
+#include "base/text.h"
 #include "image/image.h"
 
 /* A file in memory, and where messages about it go. */
@@ -50,6 +51,17 @@ bool image_write_png(const image_samples *);
 bool image_write_jpeg(const image_samples *);
 bool image_write_webp(const image_samples *);
 bool image_write_tiff(const image_samples *);
+
+/* Primaries and transfer by the numbers of ITU-T H.273; 0, 0: nothing is known. */
+static inline void image_code_points(const kiln_image_write_options *o, uint8_t points[2]) {
+    points[0] = o->srgb ? 1 : o->cicp_primaries;
+    points[1] = o->srgb ? 13 : o->cicp_transfer;
+}
+
+/* caption.c: the text of the options where a format has no pairs: lines "Keyword: value", without an end of line. */
+void image_caption(const kiln_image_write_options *, kiln_text *out);
+/* The same as an XMP packet, with "Software" as the tool that made the file too; empty where there is no text. */
+void image_xmp(const kiln_image_write_options *, kiln_text *out);
 
 static inline size_t image_samples_row(const image_samples *s) {
     return (size_t)s->width * s->channels * (s->bits / 8);

@@ -238,13 +238,31 @@ static void encode_row(kiln_text *out, const float *pixels, uint32_t width, unsi
     for (size_t c = 0; c < 4; c++) encode_component(out, row + c, width);
 }
 
-bool image_write_hdr(const char *path, const kiln_image *image, kiln_report *report) {
+static void append_line(kiln_text *out, const char *before, const char *separator, const char *value) {
+    text_format(out, "%s%s", before, separator);
+    for (; *value; value++) text_append_bytes(out, (unsigned char)*value < 0x20 ? " " : value, 1);
+    text_append(out, "\n");
+}
+
+/* SOFTWARE is Radiance's own variable; the rest are comments. */
+static void append_text(kiln_text *out, const char *const *text, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++, text += 2) {
+        bool software = strcmp(text[0], "Software") == 0;
+        if (!software) text_append(out, "# ");
+        append_line(out, software ? "SOFTWARE" : text[0], software ? "=" : ": ", text[1]);
+    }
+}
+
+bool image_write_hdr(const char *path, const kiln_image *image, const char *const *text, uint32_t text_count,
+                     kiln_report *report) {
     kiln_where here = where_root(path);
     if (image->format != KILN_PIXELS_F32 || image->channels != 3 || !image->width || !image->height)
         return report_error(report, KILN_CODE_INTERNAL, &here, NULL, "a Radiance picture needs RGB of 32-bit floats");
     kiln_text out = {0};
     unsigned char *row = array_alloc(image->width, 4);
-    text_format(&out, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %u +X %u\n", image->height, image->width);
+    text_append(&out, "#?RADIANCE\n");
+    append_text(&out, text, text_count);
+    text_format(&out, "FORMAT=32-bit_rle_rgbe\n\n-Y %u +X %u\n", image->height, image->width);
     for (uint32_t y = 0; row && y < image->height; y++)
         encode_row(&out, (const float *)image->pixels + 3 * (size_t)y * image->width, image->width, row);
     bool done = row && !out.failed ? file_replace(path, out.data, out.length, report)

@@ -42,12 +42,13 @@ size_t image_bytes(const kiln_image *);
 
 /* How a display-referred file is tagged and compressed. */
 typedef struct kiln_image_write_options {
-    bool srgb; /* PNG: sRGB and cICP chunks; TIFF and JPEG: an sRGB ICC profile; WebP: nothing, which means sRGB */
-    uint8_t cicp_primaries, cicp_transfer; /* unless srgb, PNG's cICP chunk by the numbers of ITU-T H.273 (Display P3:
-                                              12, 13; Rec.1886: 1, 1); 0: none */
+    bool srgb; /* an ICC profile; PNG: sRGB and cICP chunks instead */
+    uint8_t cicp_primaries, cicp_transfer; /* unless srgb, the same by the numbers of ITU-T H.273 (Display P3: 12, 13;
+                                              Rec.1886: 1, 1): an ICC profile, PNG: cICP beside it; 0: no tag */
     uint32_t bits;       /* PNG, TIFF: 8 or 16; 0: 8 */
     uint32_t quality;    /* JPEG, WebP: 1 … 100; 0: 95; a WebP of 100 is lossless */
-    const char *const *text; /* pairs keyword, value for PNG tEXt/iTXt and TIFF ImageDescription; may be NULL */
+    const char *const *text; /* pairs keyword, value: PNG tEXt or iTXt, TIFF ImageDescription, JPEG and WebP
+                                XMP; may be NULL */
     uint32_t text_count; /* pairs */
 } kiln_image_write_options;
 
@@ -59,8 +60,9 @@ void image_versions(void (*each)(void *user, const char *name, const char *versi
  * gives the same bytes. Whole or not at all. JPEG of 4 channels is an error that says so. */
 bool image_write_display(const char *path, const kiln_image *, const kiln_image_write_options *, kiln_report *);
 
-/* Radiance RGBE, run-length coded, from 3-channel F32. */
-bool image_write_hdr(const char *path, const kiln_image *, kiln_report *);
+/* Radiance RGBE, run-length coded, from 3-channel F32. text: pairs keyword, value for the header, "Software" among them
+ * as its SOFTWARE; text_count: pairs. The same input gives the same bytes. */
+bool image_write_hdr(const char *path, const kiln_image *, const char *const *text, uint32_t text_count, kiln_report *);
 
 /* One layer of an EXR file. Channel names are "R", or "layer.R". */
 typedef struct kiln_exr_channel {

@@ -138,11 +138,15 @@ typedef struct writer {
     struct jpeg_compress_struct jpeg;
     unsigned char *bytes; /* libjpeg's malloc */
     unsigned long size;
+    unsigned char profile[IMAGE_ICC_MAX];
+    kiln_text xmp; /* with what goes before it in its marker */
 } writer;
+
+/* XMP specification, part 3, 1.1.3: a packet of more than one marker would have to be split; ours is left out. */
+enum { MARKER_MAX = 65533 };
 
 static bool write_guarded(writer *w, const image_samples *s) {
     struct jpeg_compress_struct *jpeg = &w->jpeg;
-    unsigned char profile[IMAGE_ICC_SRGB_MAX];
     if (setjmp(w->guard.jump)) return false;
     jpeg_create_compress(jpeg);
     jpeg_mem_dest(jpeg, &w->bytes, &w->size);
@@ -158,7 +162,10 @@ static bool write_guarded(writer *w, const image_samples *s) {
     jpeg->optimize_coding = TRUE;
     jpeg->dct_method = JDCT_ISLOW;
     jpeg_start_compress(jpeg, TRUE);
-    if (s->options->srgb && s->channels == 3) jpeg_write_icc_profile(jpeg, profile, (unsigned)image_icc_srgb(profile));
+    unsigned profile = s->channels == 3 ? (unsigned)image_icc(s->options, w->profile) : 0;
+    if (w->xmp.data && w->xmp.length <= MARKER_MAX)
+        jpeg_write_marker(jpeg, JPEG_APP0 + 1, (const JOCTET *)w->xmp.data, (unsigned)w->xmp.length);
+    if (profile) jpeg_write_icc_profile(jpeg, w->profile, profile);
     while (jpeg->next_scanline < jpeg->image_height) {
         JSAMPROW row = (JSAMPROW)(uintptr_t)(s->bytes + jpeg->next_scanline * image_samples_row(s));
         (void)jpeg_write_scanlines(jpeg, &row, 1);
@@ -174,10 +181,14 @@ bool image_write_jpeg(const image_samples *samples) {
     writer w = {0};
     guard_init(&w.guard);
     w.jpeg.err = &w.guard.manager;
+    static const char xmp_name[] = "http://ns.adobe.com/xap/1.0/"; /* its end is part of it */
+    if (samples->options->text_count) text_append_bytes(&w.xmp, xmp_name, sizeof xmp_name);
+    image_xmp(samples->options, &w.xmp);
     bool encoded = write_guarded(&w, samples);
     jpeg_destroy_compress(&w.jpeg);
     bool done = encoded ? file_replace(samples->path, w.bytes, w.size, samples->report)
                         : image_not_written(samples->path, samples->report, "%s", w.guard.message);
     free(w.bytes);
+    text_free(&w.xmp);
     return done;
 }

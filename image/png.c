@@ -5,6 +5,7 @@
 
 #include "base/file.h"
 #include "image/codec.h"
+#include "image/icc.h"
 
 /* libpng's errors arrive here and leave by longjmp. Everything that lives across the jump is in this struct. */
 typedef struct guard {
@@ -102,6 +103,7 @@ bool image_read_png(const image_source *source, kiln_image_info *info, kiln_imag
 typedef struct writer {
     guard guard;
     const image_samples *samples;
+    unsigned char profile[IMAGE_ICC_MAX];
     kiln_writer *file;
     png_structp png;
     png_infop png_info;
@@ -118,18 +120,28 @@ static void flush(png_structp png) { (void)png; }
 
 /* Coding-independent code points (PNG, third edition, 11.3.2.6): primaries, transfer, matrix (0: RGB), full range. */
 static void set_code_points(writer *w) {
-    const kiln_image_write_options *options = w->samples->options;
-    uint8_t primaries = options->srgb ? 1 : options->cicp_primaries;
-    uint8_t transfer = options->srgb ? 13 : options->cicp_transfer;
-    if (!primaries) return;
+    uint8_t points[4] = {0, 0, 0, 1};
+    image_code_points(w->samples->options, points);
+    if (!points[0]) return;
 #ifdef PNG_cICP_SUPPORTED
-    png_set_cICP(w->png, w->png_info, primaries, transfer, 0, 1);
+    png_set_cICP(w->png, w->png_info, points[0], points[1], points[2], points[3]);
 #else
-    png_byte points[4] = {primaries, transfer, 0, 1};
     png_unknown_chunk chunk = {.name = "cICP", .data = points, .size = sizeof points, .location = PNG_HAVE_IHDR};
     png_set_keep_unknown_chunks(w->png, PNG_HANDLE_CHUNK_ALWAYS, (png_const_bytep) "cICP", 1);
     png_set_unknown_chunks(w->png, w->png_info, &chunk, 1);
 #endif
+}
+
+/* Readers older than cICP know sRGB, or a profile; a file has one of them. */
+static void set_profile(writer *w) {
+    const image_samples *s = w->samples;
+    if (s->options->srgb) {
+        png_set_sRGB(w->png, w->png_info, PNG_sRGB_INTENT_RELATIVE);
+        return;
+    }
+    size_t size = s->channels >= 3 ? image_icc(s->options, w->profile) : 0;
+    if (size)
+        png_set_iCCP(w->png, w->png_info, "display", PNG_COMPRESSION_TYPE_BASE, w->profile, (png_uint_32)size);
 }
 
 static bool is_ascii(const char *text) {
@@ -158,7 +170,7 @@ static bool write_guarded(writer *w) {
     png_set_write_fn(w->png, w, write_bytes, flush);
     png_set_IHDR(w->png, w->png_info, s->width, s->height, (int)s->bits, types[s->channels], PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    if (s->options->srgb) png_set_sRGB(w->png, w->png_info, PNG_sRGB_INTENT_RELATIVE);
+    set_profile(w);
     set_code_points(w);
     set_text(w);
     png_write_info(w->png, w->png_info);

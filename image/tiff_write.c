@@ -1,22 +1,21 @@
 #include <stdlib.h>
 
 #include "base/file.h"
-#include "base/text.h"
 #include "image/codec.h"
 #include "image/icc.h"
 #include "image/tiff.h"
 
 static void set_text(TIFF *tiff, const kiln_image_write_options *options) {
     kiln_text lines = {0};
-    for (uint32_t i = 0; i < options->text_count; i++)
-        text_format(&lines, "%s%s: %s", i ? "\n" : "", options->text[2 * i], options->text[2 * i + 1]);
+    image_caption(options, &lines);
     if (lines.data) TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, lines.data);
     text_free(&lines);
 }
 
 static bool encode(TIFF *tiff, const image_samples *s) {
     static const uint16_t straight = EXTRASAMPLE_UNASSALPHA;
-    unsigned char profile[IMAGE_ICC_SRGB_MAX];
+    unsigned char profile[IMAGE_ICC_MAX];
+    uint32_t profile_size = s->channels >= 3 ? (uint32_t)image_icc(s->options, profile) : 0;
     TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, s->width);
     TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, s->height);
     TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, s->bits);
@@ -28,8 +27,7 @@ static bool encode(TIFF *tiff, const image_samples *s) {
     TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
     TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
     if (s->channels == 2 || s->channels == 4) TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &straight);
-    if (s->options->srgb && s->channels >= 3)
-        TIFFSetField(tiff, TIFFTAG_ICCPROFILE, (uint32_t)image_icc_srgb(profile), profile);
+    if (profile_size) TIFFSetField(tiff, TIFFTAG_ICCPROFILE, profile_size, profile);
     set_text(tiff, s->options);
     for (uint32_t y = 0; y < s->height; y++) {
         void *row = (void *)(uintptr_t)(s->bytes + y * image_samples_row(s));

@@ -1,10 +1,12 @@
 #include <webp/decode.h>
 #include <webp/encode.h>
+#include <webp/mux.h>
 
 #include <stdlib.h>
 
 #include "base/file.h"
 #include "image/codec.h"
+#include "image/icc.h"
 
 static bool read_failed(const image_source *source, VP8StatusCode status) {
     switch (status) {
@@ -74,15 +76,37 @@ static bool encode(const image_samples *s, const unsigned char *rgb, WebPMemoryW
     return done || image_not_written(s->path, s->report, "libwebp error %d", code);
 }
 
+static bool add_chunk(WebPMux *mux, const char *name, const void *bytes, size_t size) {
+    const WebPData chunk = {bytes, size};
+    return !size || WebPMuxSetChunk(mux, name, &chunk, 0) == WEBP_MUX_OK;
+}
+
+/* Puts the encoded picture into a container with its profile and its text. *file: WebPDataClear. */
+static bool wrap(const image_samples *s, const WebPMemoryWriter *picture, WebPData *file) {
+    const WebPData bare = {picture->mem, picture->size};
+    unsigned char profile[IMAGE_ICC_MAX];
+    kiln_text xmp = {0};
+    WebPMux *mux = WebPMuxNew();
+    image_xmp(s->options, &xmp);
+    bool done = mux && WebPMuxSetImage(mux, &bare, 0) == WEBP_MUX_OK &&
+                add_chunk(mux, "ICCP", profile, image_icc(s->options, profile)) &&
+                add_chunk(mux, "XMP ", xmp.data, xmp.length) && WebPMuxAssemble(mux, file) == WEBP_MUX_OK;
+    WebPMuxDelete(mux);
+    text_free(&xmp);
+    return done || report_no_memory(s->report, "writing a WebP image"); /* nothing else can fail */
+}
+
 bool image_write_webp(const image_samples *s) {
     if (s->width > WEBP_MAX_DIMENSION || s->height > WEBP_MAX_DIMENSION)
         return image_not_written(s->path, s->report, "WebP holds at most %d pixels a side", WEBP_MAX_DIMENSION);
     unsigned char *expanded = s->channels < 3 ? grey_to_rgb(s) : NULL;
     if (s->channels < 3 && !expanded) return report_no_memory(s->report, "writing a WebP image");
     WebPMemoryWriter memory;
+    WebPData file = {NULL, 0};
     WebPMemoryWriterInit(&memory);
-    bool done = encode(s, expanded ? expanded : s->bytes, &memory) &&
-                file_replace(s->path, memory.mem, memory.size, s->report);
+    bool done = encode(s, expanded ? expanded : s->bytes, &memory) && wrap(s, &memory, &file) &&
+                file_replace(s->path, file.bytes, file.size, s->report);
+    WebPDataClear(&file);
     WebPMemoryWriterClear(&memory);
     free(expanded);
     return done;

@@ -115,5 +115,6 @@ bool run_light(job_run *r) {
     run_log(r, "%s: %u instance%s of %u mesh%s, %llu triangles; camera %s, light %s", path_base(r->source), c.instances,
             c.instances == 1 ? "" : "s", c.meshes, c.meshes == 1 ? "" : "es", (unsigned long long)c.triangles,
             r->view.name, lighting_describe(&r->lighting, r->options));
+    if (r->color) run_log(r, "colours: %s", kiln_color_describe(r->color));
     return true;
 }

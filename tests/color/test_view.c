@@ -123,7 +123,7 @@ static void neutral_is_khronos_formula(void **state) {
     make_colors(colors, COUNT);
     kiln_color *color = color_of(NULL, NULL);
     kiln_view *view = view_of(color, NULL, NULL, NULL, 0); /* the default */
-    assert_string_equal(kiln_view_describe(view), "display sRGB, view Khronos PBR Neutral");
+    assert_string_equal(kiln_view_describe(view), "display sRGB, view Khronos PBR Neutral, exposure +0");
     for (int i = 0; i < COUNT; i++) {
         double e[3], in[3] = {(double)colors[3 * i], (double)colors[3 * i + 1], (double)colors[3 * i + 2]};
         neutral_formula(in, e);
@@ -280,7 +280,7 @@ static void looks(void **state) {
         kiln_view_destroy(view);
     }
     kiln_view *named = view_of(color, "Monitor", "Warm", "", 0);
-    assert_string_equal(kiln_view_describe(named), "display Monitor, view Warm, look none");
+    assert_string_equal(kiln_view_describe(named), "display Monitor, view Warm, look none, exposure +0");
     assert_true(kiln_view_is_srgb(named));
     kiln_view_destroy(named);
     kiln_view_destroy(raw709);

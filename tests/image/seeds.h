@@ -90,7 +90,7 @@ static inline kiln_bytes seed_hdr(int form) {
     kiln_image image = pattern(19, 13, 3, 8);
     folder f = folder_make("a.hdr");
     kiln_report *report = kiln_report_create();
-    assert_true(image_write_hdr(f.file, &image, report));
+    assert_true(image_write_hdr(f.file, &image, NULL, 0, report));
     kiln_bytes file = read_whole(f.file);
     folder_remove(&f);
     kiln_report_destroy(report);

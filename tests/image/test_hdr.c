@@ -136,7 +136,7 @@ static void broken_files(void **state) {
 static kiln_bytes write_hdr(const kiln_image *image) {
     folder f = folder_make("a.hdr");
     kiln_report *report = kiln_report_create();
-    assert_true(image_write_hdr(f.file, image, report));
+    assert_true(image_write_hdr(f.file, image, NULL, 0, report));
     kiln_report_destroy(report);
     kiln_bytes file = read_whole(f.file);
     folder_remove(&f);

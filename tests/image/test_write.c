@@ -114,7 +114,7 @@ static void a_full_disk_keeps_the_old_file(void **state) {
         assert_true(file_replace(f.file, "old", 3, report));
         setrlimit(RLIMIT_FSIZE, &little);
         bool done = i == 5   ? image_write_exr(f.file, &exr, report)
-                    : i == 4 ? image_write_hdr(f.file, &image, report)
+                    : i == 4 ? image_write_hdr(f.file, &image, NULL, 0, report)
                              : image_write_display(f.file, &image, NULL, report);
         setrlimit(RLIMIT_FSIZE, &before);
         assert_false(done);

@@ -72,6 +72,7 @@ static void a_file_becomes_pictures_and_statistics(void **state) {
     assert_done(f, kiln_job_render(job, PAIR("metallic_factor_a"), f->report));
     assert_string_equal(t.phases, "color import frame subdivide light build expose render write ");
     assert_non_null(strstr(t.log.data, "metallic_factor_a.gltf: "));
+    assert_non_null(strstr(t.log.data, "colours: embedded kiln config, working space lin_rec709"));
     assert_true(t.progress > 0);
     assert_int_equal(access(path_in(f, "metallic_factor_a_eye.png", png), F_OK), 0);
     assert_int_equal(access(path_in(f, "0000.exr", exr), F_OK), 0);
