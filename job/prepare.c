@@ -84,6 +84,7 @@ static bool spare_inputs(const job_run *r) {
 
 bool run_outputs(job_run *r) {
     template_values values = {r->asset_name, r->view.name, "default", 0};
+    const char *stats = r->options->stats;
     return outputs_plan(r->options, &values, &r->outputs, r->report) &&
            outputs_check_distinct(&r->outputs, stats, r->report) && spare_inputs(r) &&
            outputs_try(&r->outputs, stats, r->report);
