@@ -44,6 +44,12 @@ float check_factor(float value, float low, float high, float fallback, const cha
     return nearest;
 }
 
+bool check_time_count(uint32_t count, const kiln_where *where, kiln_report *report) {
+    enum { TIMES_MAX = 129 }; /* also Embree's limit (RTC_MAX_TIME_STEP_COUNT) */
+    return count <= TIMES_MAX || report_error(report, KILN_CODE_LIMIT, where, "sample the motion more coarsely",
+                                              "%u time samples (at most %d)", count, TIMES_MAX);
+}
+
 bool check_transform(double m[16], const kiln_where *where, kiln_report *report) {
     for (int i = 0; i < 16; i++)
         if (!isfinite(m[i]))

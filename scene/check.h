@@ -20,6 +20,9 @@ bool check_open(const kiln_scene *, const kiln_where *, kiln_report *);
 float check_factor(float value, float low, float high, float fallback, const char *name, const kiln_where *,
                    kiln_report *);
 
+/* So many time samples of a motion can be kept. */
+bool check_time_count(uint32_t count, const kiln_where *, kiln_report *);
+
 /* Finite, else an error. A last row that is not 0 0 0 1 is made so, with a warning. */
 bool check_transform(double m[16], const kiln_where *, kiln_report *);
 

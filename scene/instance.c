@@ -1,8 +1,5 @@
 #include "scene/check.h"
 
-/* Also Embree's limit (RTC_MAX_TIME_STEP_COUNT). */
-enum { TIMES_MAX = 129 };
-
 static bool check_transforms(kiln_instance *instance, mat4 *transforms, const kiln_where *where, kiln_report *report) {
     for (uint32_t t = 0; t < instance->time_count; t++) {
         if (!check_transform(transforms[t].m, where, report)) return false;
@@ -22,9 +19,7 @@ bool kiln_scene_add_instance(kiln_scene *scene, const kiln_instance_desc *desc, 
         return false;
     bool moves = desc->time_count > 1 && desc->transforms;
     kiln_instance instance = {.mesh = desc->mesh, .time_count = moves ? desc->time_count : 1};
-    if (instance.time_count > TIMES_MAX)
-        return report_error(report, KILN_CODE_LIMIT, &place.where, "sample the motion more coarsely",
-                            "%u time samples (at most %d)", instance.time_count, TIMES_MAX);
+    if (!check_time_count(instance.time_count, &place.where, report)) return false;
     mat4 *transforms = ARENA_ARRAY(&scene->arena, mat4, instance.time_count);
     instance.name = arena_string(&scene->arena, desc->name);
     if (!transforms || !instance.name) return report_no_memory(report, "building the scene");

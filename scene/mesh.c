@@ -4,9 +4,6 @@
 
 #include "scene/check.h"
 
-/* Also Embree's limit (RTC_MAX_TIME_STEP_COUNT). */
-enum { TIMES_MAX = 129 };
-
 const kiln_primvar *mesh_primvar(const kiln_mesh *mesh, kiln_primvar_kind kind, uint32_t set) {
     for (uint32_t i = 0; i < mesh->primvar_count; i++)
         if (mesh->primvars[i].kind == kind && mesh->primvars[i].set == set) return &mesh->primvars[i];
@@ -28,9 +25,7 @@ static bool build_positions(mesh_builder *b) {
     kiln_mesh *m = b->mesh;
     m->vertex_count = b->desc->vertex_count;
     m->time_count = b->desc->time_count ? b->desc->time_count : 1;
-    if (m->time_count > TIMES_MAX)
-        return report_error(b->report, KILN_CODE_LIMIT, b->where, "sample the motion more coarsely",
-                            "%u time samples (at most %d)", m->time_count, TIMES_MAX);
+    if (!check_time_count(m->time_count, b->where, b->report)) return false;
     size_t points = (size_t)m->vertex_count * m->time_count;
     m->positions = mesh_keep(b, b->desc->positions, points, 3 * sizeof(float));
     if (!m->positions) return false;

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "render/world/images.h"
+#include "scene/transfer.h"
 
 /* Sums and powers of larger ones would not be finite. */
 #define RADIANCE_LIMIT 1e30f
@@ -14,15 +15,13 @@ static bool load(environment *e, kiln_arena *arena, const kiln_scene *scene, con
     const kiln_environment *from = &scene->environment;
     uint32_t width = 1, height = 1;
     float one[3] = {1, 1, 1}, *rgb = one;
-    const float *m = decoding->matrix[KILN_TRANSFER_LINEAR], *c = from->color;
     kiln_where where = where_root("environment");
     if (from->image) {
-        if (!image_load_linear(scene_image(scene, from->image), from->transfer, decoding->matrix[from->transfer],
-                               &width, &height, &rgb, report))
+        if (!image_load_linear(scene_image(scene, from->image), from->transfer, decoding, &width, &height, &rgb, report))
             return false;
     }
     float color[3];
-    for (int k = 0; k < 3; k++) color[k] = m[3 * k] * c[0] + m[3 * k + 1] * c[1] + m[3 * k + 2] * c[2];
+    v3_store(color, decoding_apply(decoding, KILN_TRANSFER_LINEAR, from->color));
     size_t count = (size_t)width * height;
     e->texels = ARENA_ARRAY(arena, float, 4 * count);
     size_t bad = 0;

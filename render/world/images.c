@@ -136,8 +136,8 @@ void images_free(world_image *images, uint32_t count) {
     free(images);
 }
 
-bool image_load_linear(const kiln_image_desc *desc, kiln_transfer transfer, const float *matrix, uint32_t *width,
-                       uint32_t *height, float **rgb, kiln_report *report) {
+bool image_load_linear(const kiln_image_desc *desc, kiln_transfer transfer, const kiln_decoding *decoding,
+                       uint32_t *width, uint32_t *height, float **rgb, kiln_report *report) {
     kiln_image pixels;
     bool owned;
     if (!pixels_of(desc, &pixels, &owned, report)) return false;
@@ -153,8 +153,7 @@ bool image_load_linear(const kiln_image_desc *desc, kiln_transfer transfer, cons
                                                             : ((float *)pixels.pixels)[at];
             c[k] = transfer_decode(transfer, code * scale);
         }
-        for (int k = 0; k < 3; k++)
-            (*rgb)[3 * i + (size_t)k] = matrix[3 * k] * c[0] + matrix[3 * k + 1] * c[1] + matrix[3 * k + 2] * c[2];
+        v3_store(*rgb + 3 * i, decoding_apply(decoding, transfer, c));
     }
     *width = pixels.width;
     *height = pixels.height;

@@ -4,6 +4,7 @@
 
 #include "base/report.h"
 #include "kiln/material.h"
+#include "kiln/render.h"
 #include "scene/scene.h"
 
 /* RGBA texels. U8 codes are shared by all transfers, which differ in their curve; wider formats are kept linear, once
@@ -22,8 +23,8 @@ bool images_decode(world_image *images, const kiln_scene *, uint32_t threads, ki
 bool images_check(const world_image *images, const kiln_scene *, uint32_t threads, kiln_report *);
 void images_free(world_image *images, uint32_t count);
 
-/* A picture as linear RGB floats (3 a pixel) in the space of matrix (9, row-major); owned by the caller. */
-bool image_load_linear(const kiln_image_desc *, kiln_transfer, const float *matrix, uint32_t *width, uint32_t *height,
+/* A picture as RGB floats (3 a pixel) in the working space; owned by the caller. */
+bool image_load_linear(const kiln_image_desc *, kiln_transfer, const kiln_decoding *, uint32_t *width, uint32_t *height,
                        float **rgb, kiln_report *);
 
 #endif

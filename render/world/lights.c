@@ -4,6 +4,7 @@
 
 #include "base/threads.h"
 #include "render/world/environment.h"
+#include "scene/transfer.h"
 
 typedef struct build {
     world *world;
@@ -116,12 +117,6 @@ static void add_triangles(build *b) {
     }
 }
 
-static vec3 into_working(const build *b, const float rgb[3]) {
-    const float *m = b->decoding->matrix[KILN_TRANSFER_LINEAR];
-    return v3(m[0] * rgb[0] + m[1] * rgb[1] + m[2] * rgb[2], m[3] * rgb[0] + m[4] * rgb[1] + m[5] * rgb[2],
-              m[6] * rgb[0] + m[7] * rgb[1] + m[8] * rgb[2]);
-}
-
 /* KHR_lights_punctual, 'Inner and outer cone angles': clamp(cos scale + offset)², 1 inside the inner cone. */
 static void set_spot(light *l, const kiln_light *from) {
     float inner = cosf(from->inner_cone_rad), outer = cosf(from->outer_cone_rad);
@@ -137,7 +132,7 @@ static light punctual_light(const build *b, const kiln_light *from) {
                                                        : LIGHT_DISTANT,
                .position = to_float(world_point(b->world, d3_load(from->transform + 12))),
                .axis = to_float(axis),
-               .radiance = v3_scale(into_working(b, from->color), from->intensity)};
+               .radiance = v3_scale(decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->color), from->intensity)};
     if (l.kind == LIGHT_SPOT) set_spot(&l, from);
     if (l.kind != LIGHT_DISTANT) {
         /* I/d² in metres is I s²/(s d)² in render space. */

@@ -5,6 +5,7 @@
 #include "render/bsdf/albedo.h"
 #include "render/world/images.h"
 #include "render/world/world.h"
+#include "scene/transfer.h"
 
 /* A parameter and the slot its texture goes to. */
 typedef struct slot_use {
@@ -57,12 +58,6 @@ static int list_slots(const kiln_material *m, slot_use uses[SLOT_COUNT]) {
 static bool is_identity(const float m[9]) {
     static const float identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     return memcmp(m, identity, sizeof identity) == 0;
-}
-
-static vec3 into_working(const builder *b, const float rgb[3]) {
-    const float *m = b->decoding->matrix[KILN_TRANSFER_LINEAR];
-    return v3(m[0] * rgb[0] + m[1] * rgb[1] + m[2] * rgb[2], m[3] * rgb[0] + m[4] * rgb[1] + m[5] * rgb[2],
-              m[6] * rgb[0] + m[7] * rgb[1] + m[8] * rgb[2]);
 }
 
 /* The place of a UV set among those in use; the vertex itself holds the first. */
@@ -129,7 +124,7 @@ static bool set_medium(builder *b, world_material *m, const kiln_material *from)
                             "more than 65,535 materials bound a volume");
     m->medium = w->media_count++;
     if (!(from->attenuation_distance > 0)) return true;
-    vec3 left = into_working(b, from->attenuation_color);
+    vec3 left = decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->attenuation_color);
     float per_unit = 1.0f / (from->attenuation_distance * (float)w->scale);
     const float least = 1e-9f; /* a colour of 0 absorbs all but a billionth over the distance */
     float *a = w->media + 3 * (size_t)m->medium;
@@ -142,10 +137,11 @@ static bool set_medium(builder *b, world_material *m, const kiln_material *from)
 
 static void set_constants(const builder *b, world_material *m, const kiln_material *from) {
     bool unlit = from->layers & KILN_LAYER_UNLIT;
-    vec3 base = into_working(b, from->base_color.value), emission = into_working(b, from->emission.value);
+    vec3 base = decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->base_color.value);
+    vec3 emission = decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->emission.value);
     v3_store(m->base, unlit ? v3_splat(0) : base);
     v3_store(m->emission, unlit ? base : emission);
-    v3_store(m->specular_color, into_working(b, from->specular_color.value));
+    v3_store(m->specular_color, decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->specular_color.value));
     m->opacity = from->opacity.value;
     m->metallic = from->metallic.value;
     m->roughness = from->roughness.value;

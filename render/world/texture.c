@@ -53,9 +53,8 @@ static texel filtered(const world_texture *t, float u, float v) {
 texel texture_sample(const world_texture *t, float u, float v) {
     texel c = filtered(t, u, v);
     if (!t->has_matrix) return c;
-    const float *m = t->matrix;
-    return (texel){m[0] * c.r + m[1] * c.g + m[2] * c.b, m[3] * c.r + m[4] * c.g + m[5] * c.b,
-                   m[6] * c.r + m[7] * c.g + m[8] * c.b, c.a};
+    vec3 rgb = v3_transform(t->matrix, v3(c.r, c.g, c.b));
+    return (texel){rgb.x, rgb.y, rgb.z, c.a};
 }
 
 float texture_channel(const world_texture *t, float u, float v) {
