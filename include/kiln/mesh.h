@@ -75,7 +75,8 @@ typedef struct kiln_subdivision {
 typedef struct kiln_mesh_desc {
     const char *name;
     uint32_t vertex_count;
-    uint32_t time_count;    /* positions at time_count equidistant times of the shutter; 0 or 1: rigid */
+    uint32_t time_count;    /* positions at time_count equidistant times of the shutter, at most 129; 0 or 1: rigid. The
+                               renderer shows the first, and warns */
     const float *positions; /* time_count × vertex_count × 3, metres, object space */
     uint32_t face_count;
     const uint32_t *face_sizes; /* corners of each face, ≥ 3; NULL: triangles */

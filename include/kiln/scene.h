@@ -28,7 +28,8 @@ typedef struct kiln_scene kiln_scene;
 typedef struct kiln_instance_desc {
     const char *name;
     kiln_id mesh;
-    uint32_t time_count;      /* transforms at equidistant times of the shutter; 0 or 1: at rest */
+    uint32_t time_count;      /* transforms at equidistant times of the shutter; 0 or 1: at rest. The renderer shows the
+                                 first, and warns */
     const double *transforms; /* time_count × 16; NULL: the identity */
 } kiln_instance_desc;
 
@@ -73,7 +74,7 @@ typedef struct kiln_camera {
     double focus_distance;   /* metres along the axis; 0: focus on what the middle of the picture sees */
     uint32_t blades;         /* 0: a round aperture, else a regular polygon of ≥ 3 sides */
     double blade_rotation_rad;
-    double shutter_open, shutter_close; /* seconds */
+    double shutter_open, shutter_close; /* seconds, open ≤ close; kept, but the renderer does not blur motion yet */
 } kiln_camera;
 
 /* Perspective, 40° vertical, at the origin, pinhole. */

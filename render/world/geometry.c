@@ -103,8 +103,8 @@ static bool is_placed(const build *b, uint32_t instance) {
     return b->presences[instance] == LIKE_THE_OTHERS && !b->shapes[b->scene->instances[instance].mesh - 1].baked;
 }
 
-/* For normals: the cofactors, turned right side out again under a mirror, divided by the longest. One divisor for all, so
- * that interpolation stays linear: normals are interpolated before a copy is placed, or after. */
+/* For normals: the cofactors, turned right side out again under a mirror, divided by the longest. One divisor for all,
+ * so that interpolation stays linear: normals are interpolated before a copy is placed, or after. */
 static mat4 normal_matrix(const mat4 *m) {
     dvec3 columns[3];
     double longest = 0, side = mat4_determinant(m) < 0 ? -1 : 1;
@@ -214,7 +214,8 @@ static void place_vertex(const world *w, const placement *p, const shape_primvar
     v3_store(v->p, to_float(d));
     if (primvars->normal) v3_store(v->n, place_normal(p, primvar_at(primvars->normal, face, corner, from)));
     if (primvars->uv[0]) memcpy(v->uv, primvar_at(primvars->uv[0], face, corner, from), sizeof v->uv);
-    if (primvars->tangent) place_tangent(p, primvar_at(primvars->tangent, face, corner, from), w->tangents + 4 * (size_t)at);
+    if (primvars->tangent)
+        place_tangent(p, primvar_at(primvars->tangent, face, corner, from), w->tangents + 4 * (size_t)at);
     static const float white[4] = {1, 1, 1, 1};
     if (w->colors)
         memcpy(w->colors + 4 * (size_t)at, primvars->color ? primvar_at(primvars->color, face, corner, from) : white,
@@ -272,7 +273,8 @@ static bool list_instances(build *b) {
     return true;
 }
 
-void world_place_instance(world *w, const kiln_instance *from, const kiln_mesh *mesh, uint32_t prototype, dvec3 center) {
+void world_place_instance(world *w, const kiln_instance *from, const kiln_mesh *mesh, uint32_t prototype,
+                          dvec3 center) {
     mat4 m = to_render_space(w, &from->transforms[0]), normals = normal_matrix(&m);
     dvec3 origin = mat4_point(&m, center);
     double largest = 0, t[3] = {origin.x, origin.y, origin.z};
@@ -310,6 +312,19 @@ static void warn_of_missing_tangents(const build *b, kiln_report *report) {
     }
 }
 
+/* A scene keeps motion that the renderer does not show. */
+static void warn_of_motion(const build *b, kiln_report *report) {
+    uint32_t moving = 0;
+    for (uint32_t i = 0; i < b->scene->instance_count; i++) {
+        const kiln_instance *instance = &b->scene->instances[i];
+        moving += instance->time_count > 1 || scene_mesh(b->scene, instance->mesh)->time_count > 1;
+    }
+    if (moving)
+        report_warning(report, KILN_CODE_IGNORED, NULL, "give them one time sample, the one to be seen",
+                       "%u of %u instances move while the shutter is open: they are shown at their first time sample",
+                       moving, b->scene->instance_count);
+}
+
 static bool has_colors(const build *b) {
     for (uint32_t i = 0; i < b->scene->mesh_count; i++)
         if (b->shapes[i].mesh && mesh_primvar(b->shapes[i].mesh, KILN_PRIMVAR_COLOR, 0)) return true;
@@ -322,6 +337,7 @@ static bool run(build *b, uint32_t threads, kiln_report *report) {
     if (!b->presences) return report_no_memory(report, "building geometry");
     choose_baking(b);
     w->has_colors = has_colors(b);
+    warn_of_motion(b, report);
     if (w->slots & 1u << SLOT_NORMAL) warn_of_missing_tangents(b, report);
     threads_for(threads, b->scene->mesh_count, make_shape, b);
     b->placements = array_alloc((size_t)b->scene->instance_count + b->prototype_count, sizeof *b->placements);

@@ -262,7 +262,8 @@ static void selections_treat_nan_as_stated(void **state) {
 /* Vectorised or not, the bits are the same: the compiler may not contract, reassociate or approximate. */
 static void next_up_is_cs(void **state) {
     (void)state;
-    const float places[] = {0.0f, -0.0f, 0x1p-149f, 0x1.fffffcp-127f, 0x1p-126f, 0x1.fffffep-1f, 1, 0x1.fffffep127f, INFINITY};
+    const float places[] = {0.0f, -0.0f, 0x1p-149f, 0x1.fffffcp-127f, 0x1p-126f, 0x1.fffffep-1f, 1, 0x1.fffffep127f,
+                            INFINITY};
     for (int i = 0; i < COUNT(places); i++) assert_true(fm_next_up(places[i]) == nextafterf(places[i], INFINITY));
     assert_true(isnan(fm_next_up(QUIET_NAN)));
 }

@@ -118,7 +118,8 @@ static void rotation_turns_the_surroundings(void **state) {
 static void many_turns_are_none(void **state) {
     (void)state;
     const double whole = 2 * M_PI * 16777216, rest = 1.25;
-    fixture once = build(random_picture(), WIDTH, HEIGHT, rest), often = build(random_picture(), WIDTH, HEIGHT, whole + rest);
+    fixture once = build(random_picture(), WIDTH, HEIGHT, rest);
+    fixture often = build(random_picture(), WIDTH, HEIGHT, whole + rest);
     fixture back = build(random_picture(), WIDTH, HEIGHT, rest - whole);
     float expected = once.w.lights.environment.rotation_turns;
     assert_true(fabs((double)expected - rest / (2 * M_PI)) < 1e-7);
@@ -129,8 +130,8 @@ static void many_turns_are_none(void **state) {
     drop(&back);
 }
 
-/* Small bright disks at both poles of a fine picture: where they are is known to a fraction of a row, and what is picked
- * gives their irradiance. */
+/* Small bright disks at both poles of a fine picture: where they are is known to a fraction of a row, and what is
+ * picked gives their irradiance. */
 static void poles_are_precise(void **state) {
     (void)state;
     enum { ACROSS = 4, DOWN = 4096, BRIGHT = 3, DRAWS = 100000, STEPS = 100000 };
@@ -142,7 +143,8 @@ static void poles_are_precise(void **state) {
         double row = 0.01 * i, v = row / DOWN;
         for (int pole = 0; pole < 2; pole++) {
             dvec3 d = direction_of(0.3, pole ? 1 - v : v);
-            double found = (double)environment_place(v3((float)d.x, (float)d.y, (float)d.z)).y, exact = pole ? 1 - v : v;
+            double found = (double)environment_place(v3((float)d.x, (float)d.y, (float)d.z)).y;
+            double exact = pole ? 1 - v : v;
             if (fabs(found - exact) * DOWN > 1e-3) fail_msg("row %g from pole %d: %g", row, pole, found * DOWN);
         }
     }

@@ -59,7 +59,8 @@ static void a_flat_copy_leaves_the_others_shared(void **state) {
         add_others(&b, mesh, MANY);
         const double *s = rows[i].scale, turn = 0.3; /* in a turned parent, so that 0 is what rounding makes of it */
         double c = cos(turn), d = sin(turn);
-        add_instance(&b, mesh, (double[]){c * s[0], d * s[0], 0, 0, -d * s[1], c * s[1], 0, 0, 0, 0, s[2], 0, 3, 5, 3, 1});
+        add_instance(&b, mesh,
+                     (double[]){c * s[0], d * s[0], 0, 0, -d * s[1], c * s[1], 0, 0, 0, 0, s[2], 0, 3, 5, 3, 1});
         world *w = build_world(&b);
         assert_int_equal(w->instance_count, 1 + MANY + (i == 0));
         assert_int_equal(w->triangle_count, TRIANGLES + rows[i].triangles);
@@ -94,13 +95,17 @@ static world *place_hills(scene_builder *b, int others) {
     return build_world(b);
 }
 
-/* Largest difference of directions at a vertex, and by how much the ratio of lengths varies: equal ratios are what makes
- * interpolated directions equal too. */
+/* Largest difference of directions at a vertex, and by how much the ratio of lengths varies: equal ratios are what
+ * makes interpolated directions equal too. */
 static double difference(vec3 a, vec3 b, double *ratio) {
     double la = (double)v3_length(a), lb = (double)v3_length(b), here = la / lb, first = *ratio > 0 ? *ratio : here;
     *ratio = first;
     return fmax((double)v3_length(v3_sub(v3_scale(a, (float)(1 / la)), v3_scale(b, (float)(1 / lb)))),
                 fabs(here / first - 1));
+}
+
+static dvec3 in_scene(const world *w, vec3 p) {
+    return d3_add(d3_scale((dvec3){(double)p.x, (double)p.y, (double)p.z}, 1 / w->scale), w->center);
 }
 
 /* Whether a mesh was written out or is placed by Embree must not be seen. */
@@ -116,13 +121,10 @@ static void written_and_placed_copies_are_alike(void **state) {
         for (uint32_t v = 0; v < VERTICES; v++) {
             uint32_t at = i * VERTICES + v;
             const world_vertex *a = &written->vertices[at], *b = &placed->vertices[v];
-            dvec3 p = world_point(written, (dvec3){0, 0, 0}), q = world_point(placed, (dvec3){0, 0, 0});
-            vec3 there = world_instance_point(copy, v3_load(b->p));
-            const double where[3] = {((double)a->p[0] - p.x) / written->scale - ((double)there.x - q.x) / placed->scale,
-                                     ((double)a->p[1] - p.y) / written->scale - ((double)there.y - q.y) / placed->scale,
-                                     ((double)a->p[2] - p.z) / written->scale - ((double)there.z - q.z) / placed->scale};
-            points = fmax(points, d3_length(d3_load(where)));
-            normals = fmax(normals, difference(v3_load(a->n), world_instance_normal(copy, v3_load(b->n)), &normal_ratio));
+            dvec3 p = in_scene(written, v3_load(a->p)), q = in_scene(placed, world_instance_point(copy, v3_load(b->p)));
+            vec3 n = world_instance_normal(copy, v3_load(b->n));
+            points = fmax(points, d3_length(d3_sub(p, q)));
+            normals = fmax(normals, difference(v3_load(a->n), n, &normal_ratio));
             const float *s = written->tangents + 4 * (size_t)at, *t = placed->tangents + 4 * (size_t)v;
             tangents = fmax(tangents, difference(v3_load(s), world_instance_vector(copy, v3_load(t)), &tangent_ratio));
             assert_true(s[3] == t[3] * copy->side);
@@ -136,10 +138,37 @@ static void written_and_placed_copies_are_alike(void **state) {
     builder_free(&many);
 }
 
+/* Motion is kept by the scene and not shown: that is said once, with a count. */
+static void motion_is_warned_of(void **state) {
+    (void)state;
+    scene_builder b = builder_make();
+    kiln_id still = add_hills(&b, 0);
+    const float p[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 0, 0, 6, 0, 0, 5, 1, 0};
+    kiln_mesh_desc flap = {.vertex_count = 3, .time_count = 2, .positions = p, .face_count = 1,
+                           .face_vertices = (uint32_t[]){0, 1, 2}};
+    kiln_id bending = add_mesh(&b, &flap);
+    const double path[32] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 2, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 9, 0,
+                             0, 1};
+    kiln_instance_desc moving = {.mesh = still, .time_count = 2, .transforms = path};
+    must(kiln_scene_add_instance(b.scene, &moving, NULL, b.report), b.report, "adding an instance");
+    add_instance(&b, still, NULL);
+    add_instance(&b, bending, NULL);
+    world *w = build_world(&b);
+    assert_int_equal(kiln_report_size(b.report), 1);
+    kiln_message m = kiln_report_message(b.report, 0);
+    assert_true(m.severity == KILN_WARNING && m.code == KILN_CODE_IGNORED && m.count == 1);
+    assert_non_null(strstr(m.what, "2 of 3 instances"));
+    double first = ((double)w->vertices[0].p[0] / w->scale + w->center.x) - (2 - 0.5);
+    assert_true(fabs(first) < 1e-4);
+    world_destroy(w);
+    builder_free(&b);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_flat_copy_leaves_the_others_shared),
         cmocka_unit_test(written_and_placed_copies_are_alike),
+        cmocka_unit_test(motion_is_warned_of),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
