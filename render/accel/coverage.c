@@ -1,27 +1,11 @@
 #include "render/accel/coverage.h"
 
-float coverage_alpha(const world *w, uint32_t triangle, float u, float v) {
-    const world_material *m = &w->materials[w->triangle_material[triangle]];
-    const uint32_t *i = w->triangles + 3 * (size_t)triangle;
-    float b0 = 1.0f - u - v, alpha = m->opacity;
-    if (w->colors) {
-        const float *c = w->colors + 3;
-        alpha *= b0 * c[4 * (size_t)i[0]] + u * c[4 * (size_t)i[1]] + v * c[4 * (size_t)i[2]];
-    }
-    if (m->texture[SLOT_OPACITY]) {
-        const world_texture *t = &w->textures[m->texture[SLOT_OPACITY] - 1];
-        const float *uv[3];
-        for (int k = 0; k < 3; k++) uv[k] = t->uv_set ? w->uvs[t->uv_set] + 2 * (size_t)i[k] : w->vertices[i[k]].uv;
-        alpha *= texture_channel(t, b0 * uv[0][0] + u * uv[1][0] + v * uv[2][0],
-                                 b0 * uv[0][1] + u * uv[1][1] + v * uv[2][1]);
-    }
-    return alpha;
-}
+#include "render/world/lookup.h"
 
 static bool stops(const coverage_context *c, uint32_t ray, uint32_t triangle, uint32_t instance, float u, float v) {
     const world *w = c->world;
     const world_material *m = &w->materials[w->triangle_material[triangle]];
-    float alpha = coverage_alpha(w, triangle, u, v);
+    float alpha = lookup_alpha(w, triangle, (vec2){u, v});
     if (m->flags & MATERIAL_MASK) return alpha >= m->alpha_cutoff;
     const ray_coverage *r = c->coverage;
     sample_point p = {r->index ? r->index[ray] : 0, r->seed ? r->seed[ray] : 0};

@@ -16,9 +16,6 @@ typedef struct coverage_context {
     const ray_coverage *coverage; /* arrays by ray id */
 } coverage_context;
 
-/* Alpha of a triangle at (u, v): opacity times texture times vertex colour. */
-float coverage_alpha(const world *, uint32_t triangle, float u, float v);
-
 void coverage_filter(const struct RTCFilterFunctionNArguments *);
 
 #endif

@@ -21,8 +21,7 @@ typedef struct light {
     float two_sided; /* TRIANGLE: 1: the back emits too */
     float spot_scale, spot_offset; /* smooth edge: clamp(cos · scale + offset)² */
     float one_minus_cos;  /* DISTANT: of the half angle; 0: parallel */
-    float uv[3][2];       /* TRIANGLE with emission texture */
-    uint32_t texture;     /* 1 + index into world.textures; 0: none */
+    uint32_t varies;      /* TRIANGLE with an emission texture or partial coverage: 1 + its number; else 0 */
     float error;          /* TRIANGLE: bound on the rounding error of a point on it */
 } light;
 
@@ -45,7 +44,7 @@ typedef struct light_table {
     light *lights;
     uint32_t count;
     uint32_t kinds;        /* bits of light_kind that occur */
-    bool textured;         /* some triangle emits through a texture */
+    bool varied;           /* some triangle's emission varies */
     uint32_t *cdf[LIGHT_CHOICES], *guide[LIGHT_CHOICES]; /* NULL: nothing to choose from */
     uint32_t *distant;     /* the DISTANT ones with an angle: seen by rays that leave the scene */
     uint32_t distant_count;

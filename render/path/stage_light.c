@@ -1,5 +1,6 @@
 #include "render/light/light.h"
 #include "render/path/stages.h"
+#include "render/world/lookup.h"
 
 /* Which light, and its record. The choice takes its share of the place's first number and leaves the rest, so that lights
  * that lie side by side in the table, as the triangles of a lamp do, are sampled as one stratified area. */
@@ -52,18 +53,14 @@ KERNEL void sample(unsigned kinds, batch *b) {
     }
 }
 
-/* Textured emitters: what their texture says at the point. */
-static void apply_textures(const world *w, batch *b) {
+/* What the emitter's texture and its coverage say at the point. */
+static void vary_emission(const world *w, batch *b) {
     path_scratch *x = &b->scratch;
     for (uint32_t i = 0; i < b->n; i++) {
         const light *l = &w->lights.lights[x->light[i]];
-        if (!l->texture) continue;
-        vec2 at = warp_triangle((vec2){x->u_light_x[i], x->u_light_y[i]});
-        float b0 = 1.0f - at.x - at.y;
-        texel t = texture_sample(&w->textures[l->texture - 1],
-                                 b0 * l->uv[0][0] + at.x * l->uv[1][0] + at.y * l->uv[2][0],
-                                 b0 * l->uv[0][1] + at.x * l->uv[1][1] + at.y * l->uv[2][1]);
-        x->cr[i] *= t.r, x->cg[i] *= t.g, x->cb[i] *= t.b;
+        if (!l->varies) continue;
+        vec3 e = lookup_emission(w, l->varies - 1, warp_triangle((vec2){x->u_light_x[i], x->u_light_y[i]}));
+        x->cr[i] *= e.x, x->cg[i] *= e.y, x->cb[i] *= e.z;
     }
 }
 
@@ -73,5 +70,5 @@ void STAGE(light)(const path_context *c, batch *b) {
     if (t->kinds == KIND(LIGHT_TRIANGLE)) sample(KIND(LIGHT_TRIANGLE), b);
     else if (t->kinds == KIND(LIGHT_ENVIRONMENT)) sample(KIND(LIGHT_ENVIRONMENT), b);
     else sample(KIND(LIGHT_KINDS) - 1, b);
-    if (t->textured) apply_textures(c->world, b);
+    if (t->varied) vary_emission(c->world, b);
 }

@@ -4,6 +4,7 @@
 
 #include "base/threads.h"
 #include "render/world/environment.h"
+#include "render/world/lookup.h"
 #include "scene/transfer.h"
 
 typedef struct build {
@@ -57,21 +58,27 @@ static bool count_triangles(build *b, uint64_t *total) {
     return true;
 }
 
-/* Mean of the emission texture over the triangle, on a regular grid about as fine as its texels. */
+/* Texels of a texture that a triangle covers. */
+static float covered_texels(const world *w, uint32_t triangle, material_slot slot) {
+    uint32_t handle = w->materials[w->triangle_material[triangle]].texture[slot];
+    if (!handle) return 0.0f;
+    const world_texture *t = &w->textures[handle - 1];
+    vec2 a = lookup_uv(w, triangle, t->uv_set, (vec2){0, 0}), b = lookup_uv(w, triangle, t->uv_set, (vec2){1, 0});
+    vec2 c = lookup_uv(w, triangle, t->uv_set, (vec2){0, 1});
+    return fabsf((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) * (float)t->width * (float)t->height;
+}
+
+/* Mean of what emission is multiplied with over a triangle, on a regular grid about as fine as the texels. */
 static float mean_emission(const world *w, const light *l) {
-    if (!l->texture) return 1.0f;
-    const world_texture *t = &w->textures[l->texture - 1];
-    float ux = (l->uv[1][0] - l->uv[0][0]) * (float)t->width, uy = (l->uv[1][1] - l->uv[0][1]) * (float)t->height;
-    float vx = (l->uv[2][0] - l->uv[0][0]) * (float)t->width, vy = (l->uv[2][1] - l->uv[0][1]) * (float)t->height;
-    float texels = fabsf(ux * vy - uy * vx);
+    if (!l->varies) return 1.0f;
+    uint32_t triangle = l->varies - 1;
+    float texels = fmaxf(covered_texels(w, triangle, SLOT_EMISSION), covered_texels(w, triangle, SLOT_OPACITY));
     int n = texels < 4.0f ? 2 : texels > 4096.0f ? 64 : (int)ceilf(sqrtf(texels));
     float sum = 0, points = 0;
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n - i; j++) {
-            float b1 = ((float)i + 0.3333f) / (float)n, b2 = ((float)j + 0.3333f) / (float)n, b0 = 1.0f - b1 - b2;
-            texel c = texture_sample(t, b0 * l->uv[0][0] + b1 * l->uv[1][0] + b2 * l->uv[2][0],
-                                     b0 * l->uv[0][1] + b1 * l->uv[1][1] + b2 * l->uv[2][1]);
-            sum += c.r * l->radiance.x + c.g * l->radiance.y + c.b * l->radiance.z;
+            vec2 at = {((float)i + 0.3333f) / (float)n, ((float)j + 0.3333f) / (float)n};
+            sum += v3_dot(lookup_emission(w, triangle, at), l->radiance);
             points += l->radiance.x + l->radiance.y + l->radiance.z;
         }
     return points > 0 ? sum / points : 0.0f;
@@ -82,15 +89,12 @@ static light triangle_light(const world *w, const world_instance *copy, uint32_t
     const world_material *m = &w->materials[w->triangle_material[triangle]];
     vec3 p[3];
     float reach = copy->magnitude;
-    light l = {.kind = LIGHT_TRIANGLE, .radiance = v3_load(m->emission), .texture = m->texture[SLOT_EMISSION],
+    light l = {.kind = LIGHT_TRIANGLE, .radiance = v3_load(m->emission),
+               .varies = lookup_emission_varies(w, triangle) ? triangle + 1 : 0,
                .two_sided = m->flags & MATERIAL_DOUBLE_SIDED || m->kind == KIND_TRANSMISSIVE ? 1.0f : 0.0f};
     for (int k = 0; k < 3; k++) {
         p[k] = world_instance_point(copy, v3_load(w->vertices[v[k]].p));
         reach = fmaxf(reach, v3_max(v3_abs(p[k])));
-        const float *uv = w->vertices[v[k]].uv;
-        if (l.texture && w->textures[l.texture - 1].uv_set > 0)
-            uv = w->uvs[w->textures[l.texture - 1].uv_set] + 2 * (size_t)v[k];
-        l.uv[k][0] = uv[0], l.uv[k][1] = uv[1];
     }
     l.position = p[0];
     l.e1 = v3_sub(p[1], p[0]);

@@ -4,6 +4,7 @@
 #include "render/path/roulette.h"
 #include "render/path/shading.h"
 #include "render/path/surface.h"
+#include "render/world/lookup.h"
 
 /* One path, as it is between bounces. */
 typedef struct path {
@@ -186,13 +187,7 @@ static void connect(const path_context *c, path *p, const hit *h, const shading 
     place.x = rest;
     if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, place, fine, &l);
     light_sampled r = light_sample(KIND(LIGHT_KINDS) - 1, &l, s->position, place);
-    if (l.texture) {
-        vec2 at = warp_triangle(place);
-        float b0 = 1.0f - at.x - at.y;
-        texel x = texture_sample(&w->textures[l.texture - 1], b0 * l.uv[0][0] + at.x * l.uv[1][0] + at.y * l.uv[2][0],
-                                 b0 * l.uv[0][1] + at.x * l.uv[1][1] + at.y * l.uv[2][1]);
-        r.radiance = v3_mul(r.radiance, v3(x.r, x.g, x.b));
-    }
+    if (l.varies) r.radiance = v3_mul(r.radiance, lookup_emission(w, l.varies - 1, warp_triangle(place)));
     float density = r.pdf * distribution_probability(c->light_cdf, k);
     shading_connection n = shading_connect(mask, s, c->estimator, p->throughput, &r, density, w->slices);
     if (w->absorbs) {

@@ -1,0 +1,50 @@
+#include "render/world/lookup.h"
+
+vec2 lookup_uv(const world *w, uint32_t triangle, uint32_t uv_set, vec2 at) {
+    const uint32_t *i = w->triangles + 3 * (size_t)triangle;
+    const float *uv[3];
+    for (int k = 0; k < 3; k++) uv[k] = uv_set ? w->uvs[uv_set] + 2 * (size_t)i[k] : w->vertices[i[k]].uv;
+    float b0 = 1.0f - at.x - at.y;
+    return (vec2){b0 * uv[0][0] + at.x * uv[1][0] + at.y * uv[2][0], b0 * uv[0][1] + at.x * uv[1][1] + at.y * uv[2][1]};
+}
+
+static const world_texture *texture_of(const world *w, uint32_t triangle, material_slot slot) {
+    uint32_t handle = w->materials[w->triangle_material[triangle]].texture[slot];
+    return handle ? &w->textures[handle - 1] : NULL;
+}
+
+float lookup_alpha(const world *w, uint32_t triangle, vec2 at) {
+    float alpha = w->materials[w->triangle_material[triangle]].opacity;
+    if (w->colors) {
+        const uint32_t *i = w->triangles + 3 * (size_t)triangle;
+        const float *c = w->colors + 3;
+        alpha *= (1.0f - at.x - at.y) * c[4 * (size_t)i[0]] + at.x * c[4 * (size_t)i[1]] + at.y * c[4 * (size_t)i[2]];
+    }
+    const world_texture *t = texture_of(w, triangle, SLOT_OPACITY);
+    if (t) {
+        vec2 uv = lookup_uv(w, triangle, t->uv_set, at);
+        alpha *= texture_channel(t, uv.x, uv.y);
+    }
+    return alpha;
+}
+
+static float coverage(const world *w, uint32_t triangle, vec2 at) {
+    const world_material *m = &w->materials[w->triangle_material[triangle]];
+    if (m->flags & MATERIAL_MASK) return lookup_alpha(w, triangle, at) >= m->alpha_cutoff ? 1.0f : 0.0f;
+    if (m->flags & MATERIAL_BLEND) return fm_clamp(lookup_alpha(w, triangle, at), 0.0f, 1.0f);
+    return 1.0f;
+}
+
+vec3 lookup_emission(const world *w, uint32_t triangle, vec2 at) {
+    float stands = coverage(w, triangle, at);
+    const world_texture *t = texture_of(w, triangle, SLOT_EMISSION);
+    if (!t) return v3(stands, stands, stands);
+    vec2 uv = lookup_uv(w, triangle, t->uv_set, at);
+    texel e = texture_sample(t, uv.x, uv.y);
+    return v3(stands * e.r, stands * e.g, stands * e.b);
+}
+
+bool lookup_emission_varies(const world *w, uint32_t triangle) {
+    const world_material *m = &w->materials[w->triangle_material[triangle]];
+    return m->texture[SLOT_EMISSION] || m->flags & (MATERIAL_MASK | MATERIAL_BLEND);
+}

@@ -1,0 +1,20 @@
+/* render/world/lookup.h: what textures and vertices say at a point of a triangle, for those who have no hit there: the
+ * filter of partial coverage and samples of lights. at: the barycentric weights of the second and the third corner. */
+#ifndef KILN_RENDER_WORLD_LOOKUP_H
+#define KILN_RENDER_WORLD_LOOKUP_H
+
+#include "render/world/world.h"
+
+vec2 lookup_uv(const world *, uint32_t triangle, uint32_t uv_set, vec2 at);
+
+/* Opacity times texture times vertex colour. */
+float lookup_alpha(const world *, uint32_t triangle, vec2 at);
+
+/* What the material's emission is multiplied with: its texture, and the part of the light that coverage lets stand (a
+ * ray meets the surface with this probability). */
+vec3 lookup_emission(const world *, uint32_t triangle, vec2 at);
+
+/* Is that other than (1, 1, 1) anywhere? */
+bool lookup_emission_varies(const world *, uint32_t triangle);
+
+#endif
