@@ -1,8 +1,10 @@
 #include "cli/inspect_text.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/arena.h"
 #include "cli/json_text.h"
 
 /* Rows of a list that are shown unless all are asked for. */
@@ -96,10 +98,48 @@ static void print_list(const printer *p, const char *heading, const char *key,
     }
 }
 
+/* ", mesh 3 Wheel": what a row refers to, by its place in another list. */
+static void print_reference(const printer *p, const json_t *row, const char *key, const char *list, const char *before) {
+    if (is_null(row, key)) return;
+    text_format(p->out, "%s%s %.0f ", before, key, number_in(row, key));
+    append_name(p->out, text_in(json_array_get(member(p->root, list), (size_t)number_in(row, key)), "name"), 0);
+}
+
+/* The tree by indentation; no deeper than lines are wide. */
+static void print_nodes(const printer *p) {
+    enum { INDENT_MAX = 32 };
+    const json_t *rows = member(p->root, "nodes"), *row;
+    size_t i, count = json_array_size(rows);
+    size_t *depth = array_alloc(count, sizeof *depth);
+    if (!count || !depth) {
+        free(depth);
+        return;
+    }
+    text_append(p->out, "\nNodes\n");
+    json_array_foreach(rows, i, row) {
+        if (i == SHOWN && !p->all) {
+            text_format(p->out, "  … %zu more; -v lists all\n", count - i);
+            break;
+        }
+        depth[i] = is_null(row, "parent") ? 0 : depth[(size_t)number_in(row, "parent")] + 1;
+        text_format(p->out, "%5zu  %*s", i, (int)(2 * (depth[i] < INDENT_MAX ? depth[i] : INDENT_MAX)), "");
+        append_name(p->out, *text_in(row, "name") ? text_in(row, "name") : "-", 0);
+        print_reference(p, row, "mesh", "meshes", ": ");
+        print_reference(p, row, "camera", "cameras", ": ");
+        print_reference(p, row, "light", "lights", ": ");
+        text_append(p->out, "\n");
+    }
+    free(depth);
+}
+
 static void print_instance(const printer *p, const json_t *row) {
-    const json_t *mesh = json_array_get(member(p->root, "meshes"), (size_t)number_in(row, "mesh"));
-    text_format(p->out, "mesh %.0f ", number_in(row, "mesh"));
-    append_name(p->out, text_in(mesh, "name"), 0);
+    const json_t *name;
+    size_t i;
+    print_reference(p, row, "mesh", "meshes", "");
+    json_array_foreach(member(row, "materials"), i, name) {
+        text_append(p->out, i ? ", " : ", of ");
+        append_name(p->out, *json_string_value(name) ? json_string_value(name) : "-", 0);
+    }
     text_append(p->out, " at ");
     append_vector(p->out, member(row, "position"));
 }
@@ -197,6 +237,7 @@ void inspect_text(const char *json, bool all, kiln_text *out) {
     if (!root) return;
     print_source(&p);
     print_counts(&p);
+    print_nodes(&p);
     print_list(&p, "Instances", "instances", print_instance);
     print_list(&p, "Meshes", "meshes", print_mesh);
     print_list(&p, "Materials", "materials", print_material);

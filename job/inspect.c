@@ -38,19 +38,6 @@ static json_t *counts(const job_run *r) {
     return o;
 }
 
-static json_t *instances(const kiln_scene *scene) {
-    json_t *array = json_array();
-    for (uint32_t i = 0; i < scene->instance_count; i++) {
-        const kiln_instance *from = &scene->instances[i];
-        json_t *o = json_object();
-        put_text(o, "name", from->name);
-        put_count(o, "mesh", from->mesh - 1);
-        put(o, "position", json_numbers_of(from->transforms[0].m + 12, 3));
-        (void)json_array_append_new(array, o);
-    }
-    return array;
-}
-
 static json_t *primvars(const kiln_mesh *m) {
     static const char *const kinds[] = {[KILN_PRIMVAR_NORMAL] = "normal", [KILN_PRIMVAR_TANGENT] = "tangent",
                                         [KILN_PRIMVAR_UV] = "uv", [KILN_PRIMVAR_COLOR] = "color"};
@@ -181,7 +168,8 @@ static json_t *describe(const job_run *r) {
     put(o, "source", source_facts(r));
     put(o, "counts", counts(r));
     put(o, "bounds", stats_bounds(kiln_scene_bounds(r->scene)));
-    put(o, "instances", instances(r->scene));
+    put(o, "nodes", inspect_nodes(r->scene));
+    put(o, "instances", inspect_instances(r->scene));
     put(o, "meshes", meshes(r));
     put(o, "materials", inspect_materials(r->scene));
     put(o, "images", inspect_images(r->scene, r->asset_images, &textures));

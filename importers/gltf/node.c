@@ -102,8 +102,9 @@ static bool add_light(gltf_reader *r, int index, const gltf_node *n, const mat4 
 /* A node on its way to the scene; its parent's transform comes along. */
 typedef struct visit {
     int node;
+    uint32_t parent; /* in the list that the scene keeps */
     bool visible;
-    mat4 parent;
+    mat4 transform; /* of the parent */
 } visit;
 
 /* *visible: that of the parent, then that of the node and its descendants (KHR_node_visibility). Cameras need not be
@@ -126,19 +127,39 @@ static bool enter_node(gltf_reader *r, int index, const mat4 *transform, bool *v
     return light < 0 || add_light(r, light, n, transform);
 }
 
+/* Keeps what inspect shows of a node. Cameras and lights were added last, if at all. */
+static bool keep_node(gltf_reader *r, const gltf_node *n, const visit *v, const mat4 *local, kiln_scene_counts before) {
+    kiln_scene *scene = r->scene;
+    scene_node *kept = &r->nodes[scene->source.node_count++];
+    *kept = (scene_node){.name = arena_string(&scene->arena, n->name),
+                         .parent = v->parent,
+                         .mesh = n->mesh < 0 ? 0 : (kiln_id)n->mesh + 1,
+                         .camera = scene->camera_count > before.cameras ? scene->camera_count : 0,
+                         .light = scene->light_count > before.lights ? scene->light_count : 0,
+                         .local = *local};
+    return kept->name || report_no_memory(r->report, "reading a glTF file");
+}
+
 /* Depth first, first child first. Trees were checked: each node is pushed once, so count entries are enough. */
 static bool walk(gltf_reader *r, const int *roots, size_t root_count, visit *stack) {
     size_t top = 0;
-    for (size_t i = root_count; i-- > 0;) stack[top++] = (visit){roots[i], true, mat4_identity()};
+    for (size_t i = root_count; i-- > 0;) stack[top++] = (visit){roots[i], SCENE_NO_PARENT, true, mat4_identity()};
     while (top) {
         visit v = stack[--top];
         const gltf_node *n = &r->document.nodes[v.node];
-        mat4 transform = mat4_mul(v.parent, local_transform(n));
-        if (!enter_node(r, v.node, &transform, &v.visible)) return false;
+        const kiln_scene_counts before = {.cameras = r->scene->camera_count, .lights = r->scene->light_count};
+        uint32_t place = r->scene->source.node_count;
+        mat4 local = local_transform(n), transform = mat4_mul(v.transform, local);
+        if (!enter_node(r, v.node, &transform, &v.visible) || !keep_node(r, n, &v, &local, before)) return false;
         for (size_t c = n->children.count; c-- > 0;)
-            stack[top++] = (visit){n->children.items[c], v.visible, transform};
+            stack[top++] = (visit){n->children.items[c], place, v.visible, transform};
     }
     return true;
+}
+
+void gltf_link_nodes(gltf_reader *r) {
+    for (uint32_t i = 0; i < r->scene->source.node_count; i++)
+        if (r->nodes[i].mesh) r->nodes[i].mesh = r->meshes[r->nodes[i].mesh - 1];
 }
 
 /* Without any scene, all nodes that are nobody's children. */
@@ -159,7 +180,11 @@ bool gltf_place_nodes(gltf_reader *r) {
     const gltf_document *d = &r->document;
     r->placements = reader_array(r, d->node_count, sizeof *r->placements, &r->file);
     visit *stack = r->placements ? reader_array(r, d->node_count, sizeof *stack, &r->file) : NULL;
-    if (!stack) return false;
+    if (!stack || !reader_reserve(r, d->node_count * sizeof *r->nodes, &r->file))
+        return false;
+    r->nodes = ARENA_ARRAY(&r->scene->arena, scene_node, d->node_count);
+    r->scene->source.nodes = r->nodes;
+    if (!r->nodes) return report_no_memory(r->report, "reading a glTF file");
     gltf_indices roots;
     if (d->scene_count) roots = d->scenes[d->scene < 0 ? 0 : d->scene];
     else if (!find_roots(r, &roots)) return false;

@@ -27,6 +27,31 @@ static void assets_are_shown(void **state) {
     result_free(&r);
 }
 
+/* The hierarchy of the file, indented, with what its nodes hold; and the same with matrices for programs. */
+static void the_tree_is_shown(void **state) {
+    result r = run(*state, "inspect", PAIR("node_hierarchy_b"));
+    assert_int_equal(r.code, 0);
+    assert_has(r.out, "\nNodes\n    0  parent\n    1    sheet: mesh 0 ");
+    assert_has(r.out, "\n    2  eye: camera 0 ");
+    assert_has(r.out, "\n    3  sun: light 0 ");
+    result_free(&r);
+    r = run(*state, "inspect", PAIR("node_hierarchy_b"), "--json");
+    json_t *json = json_loads(r.out, 0, NULL), *nodes = json_object_get(json, "nodes"), *node;
+    size_t i, meshes = 0, cameras = 0, children = 0;
+    json_array_foreach(nodes, i, node) {
+        assert_int_equal(json_array_size(json_object_get(node, "matrix")), 16);
+        meshes += json_is_integer(json_object_get(node, "mesh"));
+        cameras += json_is_integer(json_object_get(node, "camera"));
+        children += json_is_integer(json_object_get(node, "parent"));
+    }
+    assert_true(meshes == 1 && cameras == 1 && children >= 1);
+    const json_t *instance = json_array_get(json_object_get(json, "instances"), 0);
+    assert_int_equal(json_array_size(json_object_get(instance, "matrix")), 16);
+    assert_int_equal(json_array_size(json_object_get(instance, "materials")), 1);
+    json_decref(json);
+    result_free(&r);
+}
+
 static void textures_are_shown_with_their_transfer(void **state) {
     result r = run(*state, "inspect", PAIR("base_color_texture_a"));
     assert_int_equal(r.code, 0);
@@ -77,7 +102,7 @@ static void the_machine_is_shown(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        CLI_TEST(assets_are_shown), CLI_TEST(textures_are_shown_with_their_transfer), CLI_TEST(json_has_the_same),
+        CLI_TEST(assets_are_shown), CLI_TEST(the_tree_is_shown), CLI_TEST(textures_are_shown_with_their_transfer), CLI_TEST(json_has_the_same),
         CLI_TEST(warnings_are_on_standard_error_and_strict_counts_them), CLI_TEST(the_machine_is_shown)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
