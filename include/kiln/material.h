@@ -13,7 +13,8 @@ extern "C" {
 
 /* How the numbers of a picture become scene-linear values. */
 typedef enum kiln_transfer {
-    KILN_TRANSFER_DATA,   /* no colour: normals, roughness, masks. Integers map to [0,1], floats are taken as they are */
+    KILN_TRANSFER_DATA,   /* no colour: normals, roughness, masks. Integers map to [0,1], floats are taken as they are,
+                             and clamped to the domain of the parameter, with a warning */
     KILN_TRANSFER_SRGB,   /* sRGB curve and primaries */
     KILN_TRANSFER_LINEAR, /* scene-linear with Rec.709 primaries */
     KILN_TRANSFER_COUNT

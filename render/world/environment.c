@@ -6,9 +6,6 @@
 #include "render/world/images.h"
 #include "scene/transfer.h"
 
-/* Sums and powers of larger ones would not be finite. */
-#define RADIANCE_LIMIT 1e30f
-
 /* Radiance of every texel; what is not a radiance (negative, NaN, infinite, beyond the limit) is 0. */
 static bool load(environment *e, kiln_arena *arena, const kiln_scene *scene, const kiln_decoding *decoding,
                  kiln_report *report) {

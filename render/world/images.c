@@ -1,5 +1,6 @@
 #include "render/world/images.h"
 
+#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,22 +50,72 @@ static bool pixels_of(const kiln_image_desc *desc, kiln_image *image, bool *owne
     return image_decode(desc->encoded, desc->encoded_size, 0, image, &where, report);
 }
 
-static float *to_float_rgba(const kiln_image *image) {
+/* Which of an image's arrays serves a use. */
+static uint32_t place_of(kiln_pixel_format format, kiln_transfer transfer, texel_domain domain) {
+    bool curved = transfer == KILN_TRANSFER_SRGB;
+    if (format == KILN_PIXELS_U8 || (format == KILN_PIXELS_U16 && !curved)) return 0;
+    if (format == KILN_PIXELS_U16) domain = TEXELS_UNIT; /* it cannot leave that */
+    return 1 + 2 * (uint32_t)domain + curved;
+}
+
+const void *image_texels(const world_image *image, kiln_transfer transfer, texel_domain domain,
+                         kiln_pixel_format *format) {
+    uint32_t place = place_of(image->format, transfer, domain);
+    *format = place ? KILN_PIXELS_F32 : image->format;
+    return image->texels[place];
+}
+
+static bool into_domain(float *value, float high) {
+    bool inside = *value >= 0 && *value <= high;
+    if (!inside) *value = *value > high && *value < INFINITY ? high : 0.0f;
+    return inside;
+}
+
+/* Linear floats of U16 and F32; *outside counts the texels that were clamped. */
+static float *to_floats(const kiln_image *image, kiln_transfer transfer, texel_domain domain, size_t *outside) {
     size_t count = (size_t)image->width * image->height;
-    float *rgba = aligned_array(4 * count, sizeof *rgba);
-    void *codes = rgba ? expand(image) : NULL;
-    for (size_t i = 0; codes && i < 4 * count; i++) {
-        float code = image->format == KILN_PIXELS_U16 ? (float)((uint16_t *)codes)[i] / 65535.0f
-                     : image->format == KILN_PIXELS_U8 ? (float)((uint8_t *)codes)[i] / 255.0f
-                                                       : ((float *)codes)[i];
-        rgba[i] = i % 4 == 3 ? code : transfer_decode(KILN_TRANSFER_SRGB, code);
+    float high = domain == TEXELS_UNIT ? 1.0f : RADIANCE_LIMIT;
+    void *codes = expand(image);
+    float *rgba = image->format == KILN_PIXELS_F32 ? codes : codes ? aligned_array(4 * count, sizeof *rgba) : NULL;
+    for (size_t i = 0; rgba && i < count; i++) {
+        bool inside = true;
+        for (size_t k = 4 * i; k < 4 * i + 4; k++) {
+            float code = image->format == KILN_PIXELS_F32 ? rgba[k] : (float)((uint16_t *)codes)[k] / 65535.0f;
+            rgba[k] = k % 4 == 3 ? code : transfer_decode(transfer, code);
+            inside &= into_domain(&rgba[k], high);
+        }
+        *outside += !inside;
     }
-    if (!codes) {
-        free(rgba);
-        return NULL;
-    }
-    free(codes);
+    if (codes != rgba) free(codes);
     return rgba;
+}
+
+/* Texels for a use, unless they are there already. */
+static bool make_texels(world_image *image, const kiln_image *pixels, kiln_transfer transfer, texel_domain domain,
+                        const kiln_where *where, kiln_report *report) {
+    uint32_t place = place_of(pixels->format, transfer, domain);
+    size_t texels = (size_t)pixels->width * pixels->height, outside = 0;
+    if (image->texels[place]) return true;
+    image->texels[place] = place ? (void *)to_floats(pixels, transfer, domain, &outside) : expand(pixels);
+    image->bytes += 4 * texels * (place ? sizeof(float) : format_bytes(pixels->format));
+    if (outside)
+        report_warning(report, KILN_CODE_RANGE, where, "clean the picture",
+                       "%zu of %zu texels lie outside %s: they are clamped", outside, texels,
+                       domain == TEXELS_UNIT ? "[0, 1]" : "[0, 1e30]");
+    return image->texels[place] || report_no_memory(report, "decoding textures");
+}
+
+static bool make_all_texels(world_image *image, const kiln_image *pixels, const kiln_where *where,
+                            kiln_report *report) {
+    image->width = pixels->width;
+    image->height = pixels->height;
+    image->format = pixels->format;
+    for (int d = 0; d < TEXEL_DOMAINS; d++)
+        for (int t = 0; t < KILN_TRANSFER_COUNT; t++)
+            if (image->wanted & image_use((kiln_transfer)t, (texel_domain)d) &&
+                !make_texels(image, pixels, (kiln_transfer)t, (texel_domain)d, where, report))
+                return false;
+    return true;
 }
 
 typedef struct decode_job {
@@ -85,17 +136,8 @@ static void decode_one(void *context, size_t index, uint32_t thread) {
         atomic_store(&job->failed, true);
         return;
     }
-    image->width = pixels.width;
-    image->height = pixels.height;
-    image->format = pixels.format;
-    bool curved = image->wanted & 1u << KILN_TRANSFER_SRGB && pixels.format != KILN_PIXELS_U8;
-    bool plain = !curved || image->wanted != 1u << KILN_TRANSFER_SRGB;
-    if (plain) image->codes = expand(&pixels);
-    if (curved) image->srgb = to_float_rgba(&pixels);
-    if ((plain && !image->codes) || (curved && !image->srgb)) {
-        report_no_memory(job->report, "decoding textures");
-        atomic_store(&job->failed, true);
-    }
+    kiln_where where = where_root(scene_image_place(&job->scene->images[index]));
+    if (!make_all_texels(image, &pixels, &where, job->report)) atomic_store(&job->failed, true);
     if (owned) image_free(&pixels);
 }
 
@@ -129,10 +171,8 @@ bool images_check(const world_image *images, const kiln_scene *scene, uint32_t t
 }
 
 void images_free(world_image *images, uint32_t count) {
-    for (uint32_t i = 0; images && i < count; i++) {
-        free(images[i].codes);
-        free(images[i].srgb);
-    }
+    for (uint32_t i = 0; images && i < count; i++)
+        for (int k = 0; k < 1 + 2 * TEXEL_DOMAINS; k++) free(images[i].texels[k]);
     free(images);
 }
 

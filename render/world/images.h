@@ -7,17 +7,31 @@
 #include "kiln/render.h"
 #include "scene/scene.h"
 
-/* RGBA texels. U8 codes are shared by all transfers, which differ in their curve; wider formats are kept linear, once
- * for each curve that is asked of them. */
+/* Larger radiances have sums and powers that are not finite. */
+#define RADIANCE_LIMIT 1e30f
+
+/* What a parameter takes from a picture: shares of light, angles and coverage lie in [0, 1], emission and tints of
+ * reflections in [0, RADIANCE_LIMIT]. Floats may lie outside: they are clamped, and what is not finite is 0. */
+typedef enum texel_domain { TEXELS_UNIT, TEXELS_POSITIVE, TEXEL_DOMAINS } texel_domain;
+
+/* RGBA texels. U8 codes are shared by all uses, which differ in their curve; U16 codes by all that have none. The rest
+ * is kept as linear floats, once for each curve and domain that is asked of them. */
 typedef struct world_image {
     uint32_t width, height;
     kiln_pixel_format format;
-    void *codes;  /* U8; or data and linear use of the others */
-    float *srgb;  /* sRGB use of U16 and F32, decoded */
-    uint32_t wanted; /* bits of kiln_transfer */
+    void *texels[1 + 2 * TEXEL_DOMAINS]; /* [0]: codes */
+    size_t bytes;                        /* of all */
+    uint32_t wanted;                     /* bits of image_use */
 } world_image;
 
-/* Decodes all images with wanted != 0, in parallel. images has one entry per image of the scene. */
+static inline uint32_t image_use(kiln_transfer transfer, texel_domain domain) {
+    return 1u << (domain * KILN_TRANSFER_COUNT + transfer);
+}
+/* The texels for a use that was wanted, after images_decode; *format is theirs. */
+const void *image_texels(const world_image *, kiln_transfer, texel_domain, kiln_pixel_format *format);
+
+/* Decodes all images with wanted != 0, in parallel. images has one entry per image of the scene. Warns of floats outside
+ * the domain. false: reported. */
 bool images_decode(world_image *images, const kiln_scene *, uint32_t threads, kiln_report *);
 /* The same for the errors alone: all of them, and no pixel is kept. */
 bool images_check(const world_image *images, const kiln_scene *, uint32_t threads, kiln_report *);

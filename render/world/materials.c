@@ -55,6 +55,10 @@ static int list_slots(const kiln_material *m, slot_use uses[SLOT_COUNT]) {
     return n;
 }
 
+static texel_domain domain_of(material_slot slot) {
+    return slot == SLOT_EMISSION || slot == SLOT_SPECULAR_COLOR ? TEXELS_POSITIVE : TEXELS_UNIT;
+}
+
 static bool is_identity(const float m[9]) {
     static const float identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     return memcmp(m, identity, sizeof identity) == 0;
@@ -80,18 +84,16 @@ static void set_matrix(world_texture *t, const float matrix[9], const float *fac
 static bool add_texture(builder *b, const slot_use *use, uint32_t *handle) {
     const kiln_texture *from = use->texture;
     const world_image *image = &b->images[from->image - 1];
-    bool own_curve = from->transfer == KILN_TRANSFER_SRGB && image->format != KILN_PIXELS_U8;
     world_texture t = {
-        .texels = own_curve ? image->srgb : image->codes,
         .width = (int32_t)image->width,
         .height = (int32_t)image->height,
-        .format = own_curve ? KILN_PIXELS_F32 : image->format,
         .wrap_u = from->wrap_u,
         .wrap_v = from->wrap_v,
         .nearest = from->filter == KILN_FILTER_NEAREST,
         .channel = from->channel,
         .curve = b->world->curves[from->transfer],
     };
+    t.texels = image_texels(image, from->transfer, domain_of(use->slot), &t.format);
     if (!find_uv_set(b, from->uv_set, &t.uv_set)) return false;
     memcpy(t.transform, from->transform, sizeof t.transform);
     set_matrix(&t, b->decoding->matrix[from->transfer], use->factor);
@@ -193,7 +195,8 @@ static uint32_t want_images(builder *b, const bool *used) {
     for (uint32_t i = 0; i <= b->scene->material_count; i++) {
         slot_use uses[SLOT_COUNT];
         int n = used[i] ? list_slots(scene_material(b->scene, i), uses) : 0;
-        for (int k = 0; k < n; k++) b->images[uses[k].texture->image - 1].wanted |= 1u << uses[k].texture->transfer;
+        for (int k = 0; k < n; k++)
+            b->images[uses[k].texture->image - 1].wanted |= image_use(uses[k].texture->transfer, domain_of(uses[k].slot));
         textures += (uint32_t)n;
     }
     return textures;

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "base/hash.h"
+#include "scene/transfer.h"
 #include "tests/render/rays.h"
 
 /* 3,200 triangles: 400 copies are more than are written out (BAKE_TRIANGLES). */
@@ -164,11 +165,56 @@ static void motion_is_warned_of(void **state) {
     builder_free(&b);
 }
 
+/* Floats in a picture may be anything; what a material takes from them may not: more than all light reflected makes a
+ * closed room blow up. Where a picture is emission too, that is not bounded by 1. */
+static void float_textures_keep_to_their_domains(void **state) {
+    (void)state;
+    static const float unit[12] = {0.5f, 1, 0, 0, 0.25f, 0, 1, 0, 1, 1, 1, 1};
+    for (int curved = 0; curved < 2; curved++) {
+        float huge = curved ? 1e14f : 1e35f; /* the curve's power of it is a float yet */
+        const float rgb[12] = {0.5f, 1.5f, -1, NAN, 0.25f, INFINITY, 1, 0, huge, 1, 1, 1};
+        const float positive[12] = {0.5f, 1.5f, 0, 0, 0.25f, 0, 1, 0, fminf(huge, 1e30f), 1, 1, 1};
+        scene_builder b = builder_make();
+        kiln_material m = kiln_material_default();
+        kiln_texture t = {.image = add_image(&b, rgb, 2, 2), .filter = KILN_FILTER_NEAREST,
+                          .transfer = curved ? KILN_TRANSFER_SRGB : KILN_TRANSFER_LINEAR};
+        m.base_color.texture = m.emission.texture = m.specular_color.texture = t;
+        t.transfer = KILN_TRANSFER_DATA;
+        m.metallic.texture = m.roughness.texture = m.specular.texture = m.opacity.texture = m.normal.texture = t;
+        m.emission.value[0] = 1;
+        m.alpha_mode = KILN_ALPHA_BLEND;
+        add_instance(&b, add_hills(&b, add_material(&b, &m)), NULL);
+        world *w = build_world(&b);
+        const world_material *made = &w->materials[1];
+        for (int slot = 0; slot < SLOT_COUNT; slot++) {
+            if (!made->texture[slot]) continue;
+            bool color = slot == SLOT_BASE || slot == SLOT_EMISSION || slot == SLOT_SPECULAR_COLOR;
+            const float *domain = slot == SLOT_EMISSION || slot == SLOT_SPECULAR_COLOR ? positive : unit;
+            for (int i = 0; i < 4; i++) {
+                texel c = texture_sample(&w->textures[made->texture[slot] - 1], 0.25f + 0.5f * (float)(i & 1),
+                                         0.25f + 0.5f * (float)(i >> 1));
+                const float got[3] = {c.r, c.g, c.b};
+                for (int k = 0; k < 3; k++) {
+                    float code = domain[3 * i + k];
+                    float wanted = color && curved ? fminf(transfer_decode(KILN_TRANSFER_SRGB, code), 1e30f) : code;
+                    if (!(fabsf(got[k] - wanted) <= 1e-6f * wanted))
+                        fail_msg("slot %d, texel %d[%d]: %g instead of %g", slot, i, k, (double)got[k], (double)wanted);
+                }
+            }
+        }
+        assert_int_equal(kiln_report_count(b.report, KILN_WARNING), curved ? 3 : 2); /* one for each way of reading it */
+        assert_non_null(strstr(kiln_report_message(b.report, 0).what, "of 4 texels"));
+        world_destroy(w);
+        builder_free(&b);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_flat_copy_leaves_the_others_shared),
         cmocka_unit_test(written_and_placed_copies_are_alike),
         cmocka_unit_test(motion_is_warned_of),
+        cmocka_unit_test(float_textures_keep_to_their_domains),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
