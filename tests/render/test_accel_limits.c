@@ -9,8 +9,9 @@
 
 #include "tests/render/rays.h"
 
-/* From inside a closed mesh no ray gets out, aimed at an edge or anywhere. Aimed at a vertex a few do: Embree decides at
- * each edge by a sign, and by rounding the signs of all edges around a vertex may say that the ray is beyond them. */
+/* From inside a closed mesh no ray gets out, aimed at an edge or anywhere. Aimed at a vertex a few do: Embree decides
+ * at each edge by a sign, and by rounding the signs of all edges around a vertex may say that the ray is beyond them.
+ * */
 static void closed_meshes_have_no_holes(void **state) {
     (void)state;
     scene_builder b = builder_make();

@@ -1,5 +1,5 @@
-/* Camera rays against the closed forms of the pinhole, the parallel projection and the thin lens, and how a lens shows in
- * pictures. Seeds are fixed. */
+/* Camera rays against the closed forms of the pinhole, the parallel projection and the thin lens, and how a lens shows
+ * in pictures. Seeds are fixed. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -252,10 +252,12 @@ static void what_is_in_focus_is_sharp(void **state) {
 }
 
 /* Out of focus it is a disk of radius R |1/f − 1/d| H/(2 tan(fov/2)) pixels: as much light in all, none outside, a
- * variance of r²/4 and that of the lamp (2² / 12) and of the pixels it is counted in (1/12) in each direction; within 4 standard errors, as the replicates show them. */
+ * variance of r²/4 and that of the lamp (2² / 12) and of the pixels it is counted in (1/12) in each direction; within
+ * 4 standard errors, as the replicates show them. */
 static void what_is_out_of_focus_blurs(void **state) {
     (void)state;
-    static const struct { double depth, focus, lens; } rows[] = {{5, 3, 0.1}, {5, 12, 0.1}, {5, 2.4, 0.05}, {5, 100, 0.05}};
+    static const struct { double depth, focus, lens; } rows[] = {
+        {5, 3, 0.1}, {5, 12, 0.1}, {5, 2.4, 0.05}, {5, 100, 0.05}};
     for (int i = 0; i < 4; i++) {
         double radius = rows[i].lens * fabs(1 / rows[i].focus - 1 / rows[i].depth) * SIDE / (2 * tan(10 * M_PI / 180));
         assert_true(radius > 1.2 && radius < 20);
@@ -275,7 +277,8 @@ static void what_is_out_of_focus_blurs(void **state) {
         if (fabs(sum - 4) > 4 * sqrt(sum_error) || sqrt(sum_error) > 0.15) fail_msg("radius %g: sum %g", radius, sum);
         for (int k = 0; k < 3; k++)
             if (fabs(off[k]) > 4 * sqrt(error[k]) || sqrt(error[k]) > 0.05 * sum * variance)
-                fail_msg("radius %g: moment %d of %g is %g ± %g off", radius, k, variance, off[k] / sum, sqrt(error[k]) / sum);
+                fail_msg("radius %g: moment %d of %g is %g ± %g off", radius, k, variance, off[k] / sum,
+                         sqrt(error[k]) / sum);
         picture_free(&p);
     }
 }

@@ -1,5 +1,5 @@
-/* Partial coverage: what OPAQUE, MASK and BLEND let through, along rays of the camera and of light. Monte Carlo estimates
- * are joint at the level of one false alarm in a thousand for each test; seeds are fixed. */
+/* Partial coverage: what OPAQUE, MASK and BLEND let through, along rays of the camera and of light. Monte Carlo
+ * estimates are joint at the level of one false alarm in a thousand for each test; seeds are fixed. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -84,7 +84,8 @@ static void camera_rays_pass_in_proportion(void **state) {
         }
 }
 
-/* The same along shadow rays: a point light above the sheets, whose irradiance the floor shows, looked at from below them. */
+/* The same along shadow rays: a point light above the sheets, whose irradiance the floor shows, looked at from below
+ * them. */
 static void shadow_rays_pass_in_proportion(void **state) {
     (void)state;
     for (int i = 0; i < STACKS; i++) {
@@ -120,9 +121,9 @@ static double share_stopped(const world *w, float x, uint32_t seed, int independ
     return stopped / RAYS;
 }
 
-/* Alpha is factor times texture times vertex colour, interpolated (glTF 2.0, 3.9.2 and 3.7.2.1): here 0.8 · (85/255) times
- * a ramp from 0 at x = −1 to 1 at x = 1. Sobol' samples of one ray hit that share to within a few of 4096; independent
- * ones to within their binomial error. */
+/* Alpha is factor times texture times vertex colour, interpolated (glTF 2.0, 3.9.2 and 3.7.2.1): here 0.8 · (85/255)
+ * times a ramp from 0 at x = −1 to 1 at x = 1. Sobol' samples of one ray hit that share to within a few of 4096;
+ * independent ones to within their binomial error. */
 static void alpha_is_a_product(void **state) {
     (void)state;
     scene_builder b = builder_make();

@@ -75,8 +75,9 @@ static const unsigned masks[KIND_COUNT] = {0, BSDF_GLOSSY, BSDF_GLOSSY | BSDF_TR
 /* As the stages load it, without textures. */
 static surface surface_of(const world_material *m, bool outside) {
     outside = outside || m->thin > 0.5f;
-    return (surface){.base = v3_load(m->base), .metallic = m->metallic, .roughness = m->roughness, .specular = m->specular,
-                     .specular_color = v3_load(m->specular_color), .f0 = m->f0, .transmission = m->transmission,
+    return (surface){.base = v3_load(m->base), .metallic = m->metallic, .roughness = m->roughness,
+                     .specular = m->specular, .specular_color = v3_load(m->specular_color), .f0 = m->f0,
+                     .transmission = m->transmission,
                      .eta = outside ? m->eta : 1.0f / m->eta, .thin = m->thin,
                      .near_slice = outside ? m->slice_outside : m->slice_inside,
                      .far_slice = outside ? m->slice_inside : m->slice_outside};
@@ -148,7 +149,8 @@ static void weights_stay_within_bounds(void **state) {
     for (int i = 0; i < COUNT; i++) {
         float extreme[8]; /* often at an end of the range */
         for (int k = 0; k < 8; k++) extreme[k] = fminf(fmaxf(stream_between(&s, -0.5f, 1.5f), 0), 1);
-        row r = {"any", extreme[0], extreme[1], extreme[2], extreme[3], extreme[4], extreme[5], SOLID, KIND_DIFFUSE, 0, 0, 0};
+        row r = {.base = extreme[0], .metallic = extreme[1], .specular = extreme[2], .roughness = extreme[3],
+                 .transmission = extreme[4], .thickness = extreme[5], .layers = SOLID};
         materials[i] = material_of(&r);
         materials[i].ior = i % 10 == 0 ? 0 : 1 + 3 * extreme[6];
         materials[i].specular_color.value[1] = 2 * extreme[7];
@@ -191,7 +193,8 @@ static void records_hold_physics(void **state) {
     for (uint32_t i = 0; i < 5; i++) {
         const world_material *r = &w->materials[i + 1];
         double n = (double)m[i].ior, f0 = n > 0 ? (n - 1) * (n - 1) / ((n + 1) * (n + 1)) : 1;
-        assert_true(fabs((double)r->f0 - f0) < 1e-6 && (n == 0 || r->eta == m[i].ior) && isfinite(r->eta) && r->thin == 0);
+        assert_true(fabs((double)r->f0 - f0) < 1e-6 && (n == 0 || r->eta == m[i].ior) && r->thin == 0);
+        assert_true(isfinite(r->eta));
         const float *sigma = w->media + 3 * r->medium;
         double distance = (double)m[i].attenuation_distance * w->scale;
         double absorbs = distance > 0 ? -log(0.25) / distance : 0;
@@ -218,7 +221,8 @@ static void records_leave_out_what_is_not_asked_for(void **state) {
     m.base_color.value[0] = 3, m.base_color.value[1] = 0.5f;
     m.base_color.texture = m.emission.texture = m.roughness.texture = t;
     lit.metallic.value = lit.roughness.value = 0;
-    lit.metallic.texture = lit.roughness.texture = lit.emission.texture = lit.opacity.texture = lit.specular.texture = t;
+    lit.metallic.texture = lit.roughness.texture = lit.emission.texture = lit.opacity.texture = t;
+    lit.specular.texture = t;
     masked.alpha_mode = KILN_ALPHA_MASK, masked.alpha_cutoff = 0.25f, masked.opacity.texture = t;
     const kiln_material *all[] = {&m, &lit, &masked};
     for (int i = 0; i < 3; i++)

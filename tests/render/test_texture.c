@@ -1,5 +1,5 @@
-/* Look-ups in textures against a table of texels in double: wrap modes, filters, formats, curves and transforms, and how
- * pictures of a scene become textures. Seeds are fixed. */
+/* Look-ups in textures against a table of texels in double: wrap modes, filters, formats, curves and transforms, and
+ * how pictures of a scene become textures. Seeds are fixed. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -18,8 +18,8 @@ static float texels[4 * W * H];
 
 static world_texture plain(kiln_wrap u, kiln_wrap v, bool nearest) {
     for (uint32_t i = 0; i < 4 * W * H; i++) texels[i] = unit_float(hash_pair(51, i));
-    return (world_texture){.texels = texels, .width = W, .height = H, .format = KILN_PIXELS_F32, .wrap_u = u, .wrap_v = v,
-                           .nearest = nearest, .transform = {1, 0, 0, 0, 1, 0}};
+    return (world_texture){.texels = texels, .width = W, .height = H, .format = KILN_PIXELS_F32, .wrap_u = u,
+                           .wrap_v = v, .nearest = nearest, .transform = {1, 0, 0, 0, 1, 0}};
 }
 
 /* Which texel of n stands at an integer place anywhere on the line. */
@@ -71,8 +71,8 @@ static void coordinates_wrap(void **state) {
     }
 }
 
-/* At a texel's centre both filters give the texel; at an edge the linear one the mean, nearest the one behind it; across
- * the picture's own edge the neighbour is what the wrap mode says. */
+/* At a texel's centre both filters give the texel; at an edge the linear one the mean, nearest the one behind it;
+ * across the picture's own edge the neighbour is what the wrap mode says. */
 static void centres_and_edges(void **state) {
     (void)state;
     for (int mode = 0; mode < 3; mode++)
@@ -106,7 +106,8 @@ static void strange_coordinates_are_harmless(void **state) {
                 assert_true(c.r >= 0 && c.r <= 1 && c.a >= 0 && c.a <= 1);
             }
         t.width = t.height = 1;
-        for (int i = 0; i < STRANGE; i++) assert_true(texture_sample(&t, strange[i], strange[STRANGE - 1 - i]).r == texels[0]);
+        for (int i = 0; i < STRANGE; i++)
+            assert_true(texture_sample(&t, strange[i], strange[STRANGE - 1 - i]).r == texels[0]);
         t.transform[0] = INFINITY;
         assert_true(texture_sample(&t, 0, 0).r == texels[0]);
     }
@@ -121,7 +122,8 @@ static void transforms_move_coordinates(void **state) {
     stream s = {53, 0};
     for (int i = 0; i < 2000; i++) {
         float u = stream_between(&s, -2, 2), v = stream_between(&s, -2, 2);
-        texel a = texture_sample(&moved, u, v), b = texture_sample(&t, m[0] * u + m[1] * v + m[2], m[3] * u + m[4] * v + m[5]);
+        texel a = texture_sample(&moved, u, v);
+        texel b = texture_sample(&t, m[0] * u + m[1] * v + m[2], m[3] * u + m[4] * v + m[5]);
         assert_true(a.r == b.r && a.g == b.g && a.b == b.b && a.a == b.a);
     }
 }
@@ -177,7 +179,8 @@ static void pictures_become_textures(void **state) {
                 kiln_material m = diffuse_material(1, 1, 1);
                 kiln_image_desc image = {.name = "texel", .pixels = pixels[format], .width = 1, .height = 1,
                                          .channels = channels, .format = (kiln_pixel_format)format};
-                must(kiln_scene_add_image(b.scene, &image, &m.base_color.texture.image, b.report), b.report, "an image");
+                must(kiln_scene_add_image(b.scene, &image, &m.base_color.texture.image, b.report), b.report,
+                     "an image");
                 m.base_color.texture.transfer = (kiln_transfer)transfer;
                 add_quad(&b, add_material(&b, &m), (float[]){0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
                 world *w = build_world(&b);
@@ -189,8 +192,8 @@ static void pictures_become_textures(void **state) {
                     double code = k == 3 ? channels == 2 ? 0.4 : channels == 4 ? 0.8 : 1 : 0.2 * (grey ? 1 : k + 1);
                     if (k < 3 && transfer == KILN_TRANSFER_SRGB) code = pow((code + 0.055) / 1.055, 2.4);
                     if (fabs((double)got[k] - code) > 1e-6)
-                        fail_msg("format %d, %u channels, transfer %d: [%u] is %g instead of %g", format, channels, transfer,
-                                 k, (double)got[k], code);
+                        fail_msg("format %d, %u channels, transfer %d: [%u] is %g instead of %g", format, channels,
+                                 transfer, k, (double)got[k], code);
                 }
                 world_destroy(w);
                 builder_free(&b);
