@@ -5,11 +5,13 @@
 #include "importers/gltf/envelope.h"
 #include "scene/scene.h"
 
-/* A required extension that kiln does not read is an error; an optional one is one warning. */
+/* A required extension that kiln does not read is an error. */
 bool extensions_check(const gltf_envelope *, kiln_arena *, const kiln_where *file, kiln_report *);
 
-/* What of the file's extensions kiln reads, for those who ask; in the arena. */
-bool extensions_list(const gltf_envelope *, kiln_arena *, scene_source *, kiln_report *);
+/* Warns of every other one that kiln does not read: once for each object that carries it, declared or not, and once
+ * where it is declared for nothing. *source gets the list of all, in the arena, for those who ask. */
+bool extensions_note(const gltf_envelope *, json_value root, kiln_arena *, scene_source *, const kiln_where *file,
+                     kiln_report *);
 
 typedef enum extension_support {
     EXTENSION_READ,

@@ -41,7 +41,7 @@ static bool keep_source(gltf_reader *r, json_value root) {
     scene_source *source = &r->scene->source;
     source->format = "glTF 2.0";
     envelope_read_asset(root, &r->scene->arena, &source->generator, &source->copyright);
-    return extensions_list(&r->envelope, &r->scene->arena, source, r->report) && buffers_list_files(r);
+    return extensions_note(&r->envelope, root, &r->scene->arena, source, &r->file, r->report) && buffers_list_files(r);
 }
 
 static bool parse_document(gltf_reader *r) {
@@ -74,19 +74,27 @@ static bool make_tables(gltf_reader *r) {
 /* Each kind of motion that the file has and a still picture leaves out. */
 static void note_motion(const gltf_reader *r) {
     const gltf_document *d = &r->document;
-    kiln_where animations = where_key(&r->file, "animations"), skins = where_key(&r->file, "skins");
+    kiln_where animations = where_item(&r->file, "animations", 0), skins = where_item(&r->file, "skins", 0);
     if (d->animation_count)
-        report_warning(r->report, KILN_CODE_IGNORED, &animations, NULL, "animations are left out: the scene is at rest");
+        report_warning(r->report, KILN_CODE_IGNORED, &animations, NULL, "%zu animation%s left out: the scene is at rest",
+                       d->animation_count, d->animation_count == 1 ? " is" : "s are");
     if (d->skin_count)
-        report_warning(r->report, KILN_CODE_IGNORED, &skins, NULL, "skins are left out: meshes are shown unposed");
-    for (size_t m = 0; m < d->mesh_count; m++)
-        for (size_t p = 0; p < d->meshes[m].primitive_count; p++) {
+        report_warning(r->report, KILN_CODE_IGNORED, &skins, NULL, "%zu skin%s left out: meshes are shown unposed",
+                       d->skin_count, d->skin_count == 1 ? " is" : "s are");
+    size_t morphed = 0, first_mesh = 0, first_primitive = 0;
+    for (size_t m = d->mesh_count; m-- > 0;)
+        for (size_t p = d->meshes[m].primitive_count; p-- > 0;) {
             if (!d->meshes[m].primitives[p].target_count) continue;
-            kiln_where mesh = where_item(&r->file, "meshes", m), targets = where_item(&mesh, "primitives", p);
-            report_warning(r->report, KILN_CODE_IGNORED, &targets, NULL,
-                           "morph targets are left out: meshes have their base shape");
-            return;
+            morphed++;
+            first_mesh = m;
+            first_primitive = p;
         }
+    kiln_where mesh = where_item(&r->file, "meshes", first_mesh),
+               targets = where_item(&mesh, "primitives", first_primitive);
+    if (morphed)
+        report_warning(r->report, KILN_CODE_IGNORED, &targets, NULL,
+                       "morph targets of %zu primitive%s are left out: meshes have their base shape", morphed,
+                       morphed == 1 ? "" : "s");
 }
 
 static bool build_scene(gltf_reader *r) {

@@ -46,6 +46,39 @@ static void optional_ones_are_one_warning(void **state) {
                                      KILN_CODE_IGNORED, "extensionsUsed[0]", "ACME_hologram is not known"));
 }
 
+/* Exporters forget to declare. Each object counts, in extensions of extensions too; extras are not looked into. */
+static void undeclared_ones_are_found_and_counted(void **state) {
+    (void)state;
+    kiln_report *report = kiln_report_create();
+    char *json = document(TRIANGLE_DATA, TRIANGLE ", 'nodes': [{'mesh': 0, 'extras': {'extensions': {'ACME_extra': {}}}}], "
+                          "'extensionsUsed': ['KHR_materials_sheen', 'KHR_materials_iridescence'], "
+                          "'materials': [{'extensions': {'KHR_materials_sheen': {}}}, {}, "
+                          "{'extensions': {'KHR_materials_clearcoat': {'clearcoatTexture': {'index': 0, 'extensions': {'ACME_foo': {}}}}, "
+                          "'ACME_foo': {}}}, {'extensions': {'KHR_materials_clearcoat': {}, 'KHR_materials_ior': {}}}]");
+    kiln_scene *scene = import_text(json, report);
+    assert_non_null(scene);
+    static const struct { const char *where, *what; uint64_t count; } rows[] = {
+        {"materials[0].extensions.KHR_materials_sheen", "KHR_materials_sheen is left out", 1},
+        {"extensionsUsed[1]", "KHR_materials_iridescence is left out", 1},
+        {"materials[2].extensions.KHR_materials_clearcoat", "KHR_materials_clearcoat is left out", 2},
+        {"materials[2].extensions.KHR_materials_clearcoat.clearcoatTexture.extensions.ACME_foo", "ACME_foo is not known", 2}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_message(report, KILN_WARNING, KILN_CODE_IGNORED, rows[i].where, rows[i].what);
+        for (size_t k = 0; k < kiln_report_size(report); k++) {
+            kiln_message m = kiln_report_message(report, k);
+            if (strstr(m.what, rows[i].what)) assert_int_equal(m.count, rows[i].count);
+        }
+    }
+    assert_int_equal(kiln_report_size(report), 4);
+    static const char *const listed[] = {"KHR_materials_sheen", "KHR_materials_iridescence", "KHR_materials_clearcoat",
+                                         "ACME_foo", "KHR_materials_ior"};
+    assert_int_equal(scene->source.extension_count, 5);
+    for (int i = 0; i < 5; i++) assert_string_equal(scene->source.extensions[i].name, listed[i]);
+    kiln_scene_destroy(scene);
+    kiln_report_destroy(report);
+    free(json);
+}
+
 static void repeated_arrays_are_refused(void **state) {
     (void)state;
     import_bad(NULL, 0, "'buffers': [], 'buffers': []", KILN_CODE_SYNTAX, "buffers", "twice");
@@ -76,9 +109,10 @@ static void motion_is_one_warning_each(void **state) {
     kiln_scene *scene = import_text(json, report);
     assert_non_null(scene);
     assert_int_equal(kiln_report_count(report, KILN_WARNING), 3);
-    assert_message(report, KILN_WARNING, KILN_CODE_IGNORED, "animations", "at rest");
-    assert_message(report, KILN_WARNING, KILN_CODE_IGNORED, "skins", "unposed");
-    assert_message(report, KILN_WARNING, KILN_CODE_IGNORED, "meshes[0].primitives[0]", "morph targets");
+    assert_message(report, KILN_WARNING, KILN_CODE_IGNORED, "animations[0]", "1 animation is left out");
+    assert_message(report, KILN_WARNING, KILN_CODE_IGNORED, "skins[0]", "2 skins are left out");
+    assert_message(report, KILN_WARNING, KILN_CODE_IGNORED, "meshes[0].primitives[0]",
+                   "morph targets of 2 primitives are left out");
     kiln_scene_destroy(scene);
     kiln_report_destroy(report);
     free(json);
@@ -110,6 +144,7 @@ int main(void) {
         cmocka_unit_test(required_ones_must_be_read),
         cmocka_unit_test(the_remedy_lists_what_is_read),
         cmocka_unit_test(optional_ones_are_one_warning),
+        cmocka_unit_test(undeclared_ones_are_found_and_counted),
         cmocka_unit_test(repeated_arrays_are_refused),
         cmocka_unit_test(escaped_keys_open_nothing),
         cmocka_unit_test(motion_is_one_warning_each),
