@@ -17,6 +17,10 @@ static void copy_name(char *out, size_t size, const char *name) {
 }
 
 void place_set(scene_place *place, const kiln_scene *scene, const char *noun, const char *name, size_t number) {
+    if (scene->where && scene->where->parent) { /* "car.glb: meshes[3]": the file's own words for the object */
+        place->where = *scene->where;
+        return;
+    }
     if (name && *name) {
         char shown[80];
         copy_name(shown, sizeof shown, name);

@@ -4,7 +4,8 @@
 
 #include "scene/scene.h"
 
-/* "mesh 'Helmet'", or "mesh 3" for one without a name. Do not copy: where points into label. */
+/* "mesh 'Helmet'", or "mesh 3" for one without a name; the place in the file where an importer has located the object.
+ * Do not copy: where may point into label. */
 typedef struct scene_place {
     char label[112];
     kiln_where where;

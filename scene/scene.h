@@ -82,8 +82,8 @@ static inline const kiln_light *scene_light(const kiln_scene *s, kiln_id id) { r
  * are: what the commit found out about them is kept. */
 static inline void scene_set_open(kiln_scene *s, bool open) { s->committed = !open; }
 
-/* What stands in front of every place in the messages of the adders: the file that is being read, say. The chain must
- * live until it is replaced; NULL: nothing. */
+/* The place of what is added next, for the messages of the adders; of a file alone, without anything in it, it is what
+ * stands in front of the object's name. The chain must live until it is replaced; NULL: nothing. */
 static inline void scene_locate(kiln_scene *s, const kiln_where *where) { s->where = where; }
 
 /* The domains of a camera, for one that never enters a scene too; false is an error. */

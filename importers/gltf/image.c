@@ -92,7 +92,9 @@ bool gltf_add_image(gltf_reader *r, int image, kiln_id *id) {
     }
     kiln_image_desc desc = {.name = name, .place = place, .encoded = e.data, .encoded_size = e.size,
                             .release = e.owner ? blob_release : NULL, .release_user = e.owner};
-    if (!kiln_scene_add_image(r->scene, &desc, id, r->report)) return false;
-    r->images[image] = *id;
-    return true;
+    scene_locate(r->scene, &here);
+    bool added = kiln_scene_add_image(r->scene, &desc, id, r->report);
+    scene_locate(r->scene, &r->file);
+    if (added) r->images[image] = *id;
+    return added;
 }

@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -117,13 +118,33 @@ static bool add_uv_sets(mesh_parts *m) {
     return true;
 }
 
+/* Of vertices that faces use. The scene would refuse them too, and does not know the accessor. */
+static bool check_positions(const mesh_parts *m, const mesh_part *part) {
+    kiln_where primitive = where_item(&m->where, "primitives", part->index),
+               attributes = where_key(&primitive, "attributes"), where = where_key(&attributes, "POSITION");
+    const uint32_t *corners = m->corners + 3 * part->first_face;
+    for (size_t c = 0; c < 3 * part->face_count; c++) {
+        const float *p = m->positions + 3 * (size_t)corners[c];
+        if (!isfinite(p[0]) || !isfinite(p[1]) || !isfinite(p[2]))
+            return report_error(m->r->report, KILN_CODE_GEOMETRY, &where, repair,
+                                "vertex %zu has a position that is not finite", corners[c] - part->first_vertex);
+    }
+    return true;
+}
+
+static bool read_positions(mesh_parts *m) {
+    static const stream position = {"POSITION", KILN_PRIMVAR_NORMAL, 0, 3, 3, 0};
+    m->positions = read_values(m, &position);
+    for (size_t i = 0; m->positions && i < m->count; i++)
+        if (!check_positions(m, &m->parts[i])) return false;
+    return m->positions != NULL;
+}
+
 bool parts_read_primvars(mesh_parts *m) {
-    static const stream position = {"POSITION", KILN_PRIMVAR_NORMAL, 0, 3, 3, 0},
-                        normal = {"NORMAL", KILN_PRIMVAR_NORMAL, 0, 3, 3, 0},
+    static const stream normal = {"NORMAL", KILN_PRIMVAR_NORMAL, 0, 3, 3, 0},
                         tangent = {"TANGENT", KILN_PRIMVAR_TANGENT, 0, 4, 4, 0},
                         color = {"COLOR_0", KILN_PRIMVAR_COLOR, 0, 4, 3, 1};
-    m->positions = read_values(m, &position);
-    return m->positions && (!parts_with(m, "NORMAL") || add_stream(m, &normal)) &&
+    return read_positions(m) && (!parts_with(m, "NORMAL") || add_stream(m, &normal)) &&
            (!keep_tangents(m) || add_stream(m, &tangent)) && add_uv_sets(m) &&
            (!parts_with(m, "COLOR_0") || add_stream(m, &color));
 }

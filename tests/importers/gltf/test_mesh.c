@@ -332,6 +332,34 @@ static void knows_encoded_polygons(void **state) {
     kiln_scene_destroy(scene);
 }
 
+/* The place is the accessor's user, whichever primitive it is. */
+static void says_which_positions_are_no_numbers(void **state) {
+    (void)state;
+    float positions[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, NAN, 0};
+    import_bad(positions, sizeof positions,
+               "'bufferViews': [{'buffer': 0, 'byteLength': 72}], "
+               "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'}, "
+               "{'bufferView': 0, 'byteOffset': 36, 'componentType': 5126, 'count': 3, 'type': 'VEC3'}], "
+               "'meshes': [{'name': 'm', 'primitives': [{'attributes': {'POSITION': 0}}, "
+               "{'attributes': {'POSITION': 1}}]}], 'nodes': [{'mesh': 0}]",
+               KILN_CODE_GEOMETRY, "test.gltf: meshes[0].primitives[1].attributes.POSITION",
+               "vertex 2 has a position that is not finite");
+}
+
+/* In the file's words alone: numbers of the scene's own would point elsewhere. */
+static void places_are_the_files(void **state) {
+    (void)state;
+    kiln_report *report = kiln_report_create();
+    char *json = document(TRIANGLE_DATA, TRIANGLE ", 'nodes': [{'name': 'n'}, {'mesh': 0, 'scale': [0, 1, 1]}]");
+    kiln_scene *scene = import_text(json, report);
+    assert_non_null(scene);
+    assert_int_equal(kiln_report_size(report), 1);
+    assert_string_equal(kiln_report_message(report, 0).where, "test.gltf: nodes[1]");
+    kiln_scene_destroy(scene);
+    kiln_report_destroy(report);
+    free(json);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(winds_every_mode),
@@ -350,6 +378,8 @@ int main(void) {
         cmocka_unit_test(reads_subdivision),
         cmocka_unit_test(understands_short_forms),
         cmocka_unit_test(knows_encoded_polygons),
+        cmocka_unit_test(says_which_positions_are_no_numbers),
+        cmocka_unit_test(places_are_the_files),
     };
     return cmocka_run_group_tests_name("mesh", tests, NULL, NULL);
 }
