@@ -75,9 +75,12 @@ static inline bool mat4_invert(const mat4 *m, mat4 *inverse) {
                        -d3_dot(r2, t), 1}};
     return true;
 }
-/* translation × rotation (unit quaternion x, y, z, w) × scale */
+/* translation × rotation (a quaternion x, y, z, w of any length; of length 0: none) × scale */
 static inline mat4 mat4_trs(const double t[3], const double q[4], const double s[3]) {
-    double x = q[0], y = q[1], z = q[2], w = q[3];
+    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    bool turns = length > 0;
+    double x = turns ? q[0] / length : 0, y = turns ? q[1] / length : 0, z = turns ? q[2] / length : 0,
+           w = turns ? q[3] / length : 1;
     return (mat4){{(1 - 2 * (y * y + z * z)) * s[0], 2 * (x * y + z * w) * s[0], 2 * (x * z - y * w) * s[0], 0,
                    2 * (x * y - z * w) * s[1], (1 - 2 * (x * x + z * z)) * s[1], 2 * (y * z + x * w) * s[1], 0,
                    2 * (x * z + y * w) * s[2], 2 * (y * z - x * w) * s[2], (1 - 2 * (x * x + y * y)) * s[2], 0,

@@ -52,8 +52,6 @@ static bool add_copies(gltf_reader *r, const gltf_placement *p, const gltf_value
         load_row(t, translations, i, 3);
         load_row(q, rotations, i, 4);
         load_row(s, scales, i, 3);
-        double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-        for (int k = 0; k < 4; k++) q[k] = length > 0 ? q[k] / length : k == 3;
         mat4 transform = mat4_mul(p->transform, mat4_trs(t, q, s));
         if (!add_instance(r, p, &transform)) return false;
     }

@@ -11,11 +11,7 @@ static mat4 local_transform(const gltf_node *n) {
     if (n->matrix.count) return mat4_load(n->matrix.items);
     if (n->translation.count) memcpy(t, n->translation.items, sizeof t);
     if (n->scale.count) memcpy(s, n->scale.items, sizeof s);
-    if (n->rotation.count) {
-        memcpy(q, n->rotation.items, sizeof q);
-        double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-        for (int k = 0; k < 4; k++) q[k] = length > 0 ? q[k] / length : k == 3; /* of length 0: no rotation */
-    }
+    if (n->rotation.count) memcpy(q, n->rotation.items, sizeof q);
     return mat4_trs(t, q, s);
 }
 

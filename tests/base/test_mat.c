@@ -86,6 +86,12 @@ static void translation_rotation_scale(void **state) {
     close_to(mat4_point(&m, (dvec3){0, 1, 0}), (dvec3){7, 20, 30}, 1e-14);
     close_to(mat4_point(&m, (dvec3){0, 0, 1}), (dvec3){10, 20, 26}, 1e-14);
     assert_true(fabs(mat4_determinant(&m) + 24) < 1e-13);
+    /* Files hold quaternions of any length, and of none. */
+    const double longer[4] = {0, 0, 3, 3}, none[4] = {0};
+    m = mat4_trs(t, longer, s);
+    close_to(mat4_point(&m, (dvec3){1, 0, 0}), (dvec3){10, 22, 30}, 1e-14);
+    m = mat4_trs(t, none, s);
+    close_to(mat4_point(&m, (dvec3){1, 0, 0}), (dvec3){12, 20, 30}, 0);
     /* Any rotation keeps lengths and handedness. */
     for (uint32_t n = 0; n < 1000; n++) {
         double q[4], length = 0;
