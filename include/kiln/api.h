@@ -1,4 +1,8 @@
-/* kiln/api.h: what every public header needs: fixed-width types, visibility, the version. */
+/* kiln/api.h: what every public header needs: fixed-width types, visibility, the version.
+ *
+ * Unless a header says otherwise: pointers must not be NULL; what is passed in is read during the call alone; a
+ * pointer that is returned is borrowed; structs of options that are all zero mean the defaults. Text is UTF-8. Objects
+ * do not know of each other, nothing is global: two threads may always use two objects. */
 #ifndef KILN_API_H
 #define KILN_API_H
 

@@ -13,6 +13,7 @@
 extern "C" {
 #endif
 
+/* One kiln_render at a time writes a film, and nobody may read it meanwhile; else any number of threads may read. */
 typedef struct kiln_film kiln_film;
 
 /* What a film can hold beside the beauty: bit, name (option, EXR layer), channels, what it is. */
@@ -41,10 +42,12 @@ typedef struct kiln_film_desc {
 KILN_API uint64_t kiln_film_size(const kiln_film_desc *);
 
 KILN_API bool kiln_film_create(const kiln_film_desc *, kiln_film **film, kiln_report *);
-KILN_API void kiln_film_destroy(kiln_film *);
+/* An empty film. On failure *film is NULL: sizes or crop out of range, an AOV that does not exist, no memory. */
+KILN_API void kiln_film_destroy(kiln_film *); /* NULL: nothing happens */
 KILN_API kiln_film_desc kiln_film_describe(const kiln_film *); /* crop always filled in */
 
-/* The means so far, as floats: (x1 − x0) × (y1 − y0) × channels, rows from the top. */
+/* The means so far, as floats: (x1 − x0) × (y1 − y0) × channels, rows from the top, into the caller's array. Beauty is
+ * radiance in cd/m² per channel, in the working space of the renderer's decoding; 0 where there are no samples yet. */
 KILN_API void kiln_film_beauty(const kiln_film *, float *rgb);
 KILN_API bool kiln_film_aov(const kiln_film *, kiln_aov, float *values); /* false: the film does not hold it */
 

@@ -30,7 +30,7 @@ typedef struct kiln_subdivide_options {
     kiln_scheme scheme;     /* NONE or AUTO: as the mesh asks */
     double crease_angle_rad; /* edges that bend more than this become creases; 0: none */
     const kiln_camera *camera;  /* AUTO: edges are refined until they are about a pixel in this view; NULL: level 2 */
-    uint32_t width, height;
+    uint32_t width, height; /* of that view, pixels */
     uint32_t threads;       /* 0: all */
     uint64_t triangle_limit; /* in all; 0: 50 million; at most 2^28 */
 } kiln_subdivide_options;

@@ -10,9 +10,10 @@ extern "C" {
 
 typedef enum kiln_primvar_kind {
     KILN_PRIMVAR_NORMAL,  /* 3 floats, object space, need not be normalised; zero: the face's own */
-    KILN_PRIMVAR_TANGENT, /* 4 floats, w = ±1: bitangent = w · cross(normal, tangent) (glTF) */
+    KILN_PRIMVAR_TANGENT, /* 4 floats, w = ±1: bitangent = w · cross(normal, tangent) (glTF). Normal maps need
+                             them: importers make them where a file has none, a program must bring them */
     KILN_PRIMVAR_UV,      /* 2 floats */
-    KILN_PRIMVAR_COLOR    /* 4 floats, linear Rec.709 and alpha; multiplies base colour and opacity */
+    KILN_PRIMVAR_COLOR    /* 4 floats in [0,1], linear Rec.709 and alpha; multiplies base colour and opacity */
 } kiln_primvar_kind;
 
 typedef enum kiln_interpolation {

@@ -11,7 +11,8 @@
 extern "C" {
 #endif
 
-/* What is built once for a scene: acceleration structure, decoded textures, lights. Immutable. */
+/* What is built once for a scene: acceleration structure, decoded textures, lights. Immutable: any number of threads
+ * may render with it at the same time, each into a film of its own; every kiln_render starts its own threads. */
 typedef struct kiln_renderer kiln_renderer;
 
 /* How encoded pictures become working-space values: filled by kiln_color_working_space, or zero for
@@ -24,14 +25,16 @@ typedef struct kiln_decoding {
 } kiln_decoding;
 
 typedef struct kiln_renderer_options {
-    uint32_t threads;          /* 0: every core that the process may use */
+    uint32_t threads;          /* of building, and of each kiln_render; 0: every core that the process may use */
     const char *embree_config; /* rtcNewDevice's string, "isa=avx2"; NULL: none */
     const kiln_decoding *decoding; /* NULL: linear Rec.709 */
 } kiln_renderer_options;
 
-/* Reads scene for as long as the renderer lives. */
-KILN_API bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *, kiln_renderer **, kiln_report *);
-KILN_API void kiln_renderer_destroy(kiln_renderer *);
+/* Reads scene, which must be committed, for as long as the renderer lives; the options during the call. On failure
+ * *renderer is NULL. Warns of what the scene has and the renderer does not show: motion, maps without tangents. */
+KILN_API bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *, kiln_renderer **,
+                                   kiln_report *);
+KILN_API void kiln_renderer_destroy(kiln_renderer *); /* NULL: nothing happens */
 
 /* Decodes the pictures that a renderer of a committed scene would, and keeps nothing: every one that would make
  * kiln_renderer_create fail is an error. threads as above. */
@@ -72,13 +75,27 @@ typedef struct kiln_roulette {
 } kiln_roulette;
 
 typedef enum kiln_sampler { KILN_SAMPLER_SOBOL, KILN_SAMPLER_INDEPENDENT } kiln_sampler;
-typedef enum kiln_light_sampling { KILN_LIGHTS_POWER, KILN_LIGHTS_UNIFORM } kiln_light_sampling;
+
+/* Which light is sampled at a bounce: a triangle that emits, a punctual light, or the environment. */
+typedef enum kiln_light_sampling {
+    KILN_LIGHTS_POWER,  /* half of the choices by power; half alike among groups (the triangles of a material, a punctual
+                           light, the environment) and by power within one: a small lamp is not starved by a sun */
+    KILN_LIGHTS_UNIFORM /* all that emit alike: each triangle is one light */
+} kiln_light_sampling;
+
 typedef enum kiln_pixel_filter { KILN_PIXEL_BLACKMAN_HARRIS, KILN_PIXEL_GAUSSIAN, KILN_PIXEL_BOX } kiln_pixel_filter;
-typedef enum kiln_background { KILN_BACKGROUND_ENVIRONMENT, KILN_BACKGROUND_TRANSPARENT, KILN_BACKGROUND_COLOR } kiln_background;
+
+/* What the camera sees where it meets no surface; alpha is 0 there in any case. Reflections and refractions always see
+ * the environment. */
+typedef enum kiln_background {
+    KILN_BACKGROUND_ENVIRONMENT, /* and suns of a visible size */
+    KILN_BACKGROUND_TRANSPARENT, /* black */
+    KILN_BACKGROUND_COLOR        /* background_color */
+} kiln_background;
 
 typedef struct kiln_progress {
-    uint32_t spp_done;   /* finished passes */
-    uint64_t samples;    /* in all pixels */
+    uint32_t spp_done;   /* samples that every pixel of the film has, those included that it came with */
+    uint64_t samples;    /* taken since the call began, in all pixels together, unfinished passes included */
     double fraction;     /* of the work that the stop rules leave, 0 … 1; an estimate for noise */
     double seconds, seconds_left; /* since the call began; left < 0: unknown */
     double error;        /* square root of the estimated relMSE; < 0: unknown */
@@ -93,7 +110,7 @@ typedef struct kiln_render_options {
     double noise;                /* target for the square root of the estimated relMSE, 0.01 for 1 % [no target] */
     double error_scale;          /* the picture is multiplied by this before its error is judged: 2^exposure [1] */
     double budget_seconds;       /* [no limit] */
-    uint64_t seed;
+    uint64_t seed;               /* another seed, another realisation of the noise [0] */
     uint32_t max_depth;          /* scattering events of a path [64]; KILN_DEPTH_ZERO for none */
     kiln_estimator estimator;
     kiln_roulette roulette;
@@ -136,7 +153,13 @@ typedef struct kiln_render_stats {
     double lost_energy; /* estimated share of the picture's energy that the depth limit cut; < 0: unknown */
 } kiln_render_stats;
 
-/* Adds samples to film until a stop rule holds. On failure or cancellation the film keeps what it has. */
+/* Adds samples to film until a stop rule holds. On failure or cancellation the film keeps what it has. options NULL:
+ * the defaults. stats may be NULL.
+ *
+ * A film that has samples is gone on with: spp counts those too, and pixels get the samples that come next. With the
+ * same seed and the same options, but for stop rules, the film ends with the bits that one call would have given. With
+ * another seed the mean is as right, but the new samples are not stratified with the old ones. Options that change the
+ * picture (camera, depth, filter, background, another scene) are not noticed: the film then holds the mean of both. */
 KILN_API bool kiln_render(const kiln_renderer *, const kiln_render_options *, kiln_film *film, kiln_render_stats *stats,
                           kiln_report *);
 

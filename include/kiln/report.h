@@ -1,8 +1,9 @@
 /* kiln/report.h: what went wrong, where in the file, and what to do about it.
  *
- * Every call that can fail takes a report. It returns false exactly when it added an error to it; warnings
- * never change a return value. Equal warnings are counted, not repeated. A report may be filled from
- * several threads at once. */
+ * Every call that can fail takes a report, which must not be NULL. It returns false exactly when it added an error to
+ * it; warnings never change a return value. Equal warnings are counted, not repeated. A report may be filled from
+ * several threads at once, and is read when they are done. It may serve any number of calls: it grows until it is
+ * cleared. */
 #ifndef KILN_REPORT_H
 #define KILN_REPORT_H
 
@@ -61,11 +62,13 @@ typedef struct kiln_message {
 
 /* Returns NULL only when memory is exhausted. */
 KILN_API kiln_report *kiln_report_create(void);
-KILN_API void kiln_report_destroy(kiln_report *report);
+KILN_API void kiln_report_destroy(kiln_report *report); /* NULL: nothing happens */
 KILN_API void kiln_report_clear(kiln_report *report);
 
+/* Messages are kept in the order of their first occurrence; index < size. */
 KILN_API size_t kiln_report_size(const kiln_report *report);
 KILN_API kiln_message kiln_report_message(const kiln_report *report, size_t index);
+/* How often something of that severity was said, repetitions included. */
 KILN_API uint64_t kiln_report_count(const kiln_report *report, kiln_severity severity);
 
 /* The machine-readable name of a code ("file-missing"). */

@@ -45,7 +45,7 @@ typedef struct kiln_light {
     double transform[16];
     float color[3];
     float intensity;
-    float inner_cone_rad, outer_cone_rad; /* half angles of a spot */
+    float inner_cone_rad, outer_cone_rad; /* half angles of a spot, 0 ≤ inner ≤ outer ≤ π/2 */
     float angle_rad;                      /* DISTANT: apparent diameter (the sun: 0.0093); 0: a parallel beam */
 } kiln_light;
 
@@ -55,8 +55,8 @@ KILN_API kiln_light kiln_light_default(void);
 typedef struct kiln_environment {
     kiln_id image;         /* latitude-longitude; 0: the constant colour alone */
     kiln_transfer transfer;
-    float color[3];        /* multiplies the image; radiance in cd/m² where there is none */
-    double rotation_rad;   /* turns the surroundings counter-clockwise seen from above */
+    float color[3];        /* linear Rec.709, multiplies the image; radiance in cd/m² where there is none */
+    double rotation_rad;   /* turns the surroundings counter-clockwise seen from above; any number of turns */
 } kiln_environment;
 
 typedef enum kiln_projection { KILN_PERSPECTIVE, KILN_ORTHOGRAPHIC } kiln_projection;
@@ -66,10 +66,12 @@ typedef struct kiln_camera {
     kiln_projection projection;
     double transform[16];
     double yfov_rad;         /* PERSPECTIVE: full vertical angle */
-    double xmag, ymag;       /* ORTHOGRAPHIC: half width and half height, metres */
-    double aspect;           /* width / height that the camera was made for; 0: the picture's. A picture of another
-                                aspect keeps the vertical angle (glTF: never stretched) */
-    double znear, zfar;      /* what lies outside is not seen by camera rays; zfar 0: infinity */
+    double xmag, ymag;       /* ORTHOGRAPHIC: half width and half height, metres, > 0 */
+    double aspect;           /* width / height that the camera was made for, to choose the size of a picture by; 0: any.
+                                A render looks at neither aspect nor xmag: its height shows the vertical angle or ymag,
+                                its width what its own shape adds (glTF: never stretched) */
+    double znear, zfar;      /* metres along the axis; what lies outside is not seen by camera rays, but lights and is
+                                reflected; zfar 0: infinity */
     double lens_radius;      /* metres; 0: pinhole */
     double focus_distance;   /* metres along the axis; 0: focus on what the middle of the picture sees */
     uint32_t blades;         /* 0: a round aperture, else a regular polygon of ≥ 3 sides */
@@ -82,9 +84,12 @@ KILN_API kiln_camera kiln_camera_default(void);
 
 /* Returns NULL only when memory is exhausted. */
 KILN_API kiln_scene *kiln_scene_create(void);
+/* NULL: nothing happens. Every renderer of the scene must be gone. */
 KILN_API void kiln_scene_destroy(kiln_scene *scene);
 
-/* Each writes the new handle to *id (may be NULL). Names are copied. */
+/* Each writes the new handle to *id (may be NULL). Names are copied, and may be NULL. What is added refers to what was
+ * added before. Numbers outside their domain are brought into it with a warning, where that is no guess. Adding to a
+ * committed scene is an error. The environment may be set again. */
 KILN_API bool kiln_scene_add_image(kiln_scene *, const kiln_image_desc *, kiln_id *id, kiln_report *);
 KILN_API bool kiln_scene_add_material(kiln_scene *, const kiln_material *, kiln_id *id, kiln_report *);
 KILN_API bool kiln_scene_add_mesh(kiln_scene *, const kiln_mesh_desc *, kiln_id *id, kiln_report *);
@@ -102,7 +107,8 @@ typedef struct kiln_scene_counts {
     uint64_t triangles_unique;    /* each mesh once */
 } kiln_scene_counts;
 
-/* Checks what only the whole scene can tell, computes bounds, freezes the scene. */
+/* Checks what only the whole scene can tell, computes bounds, freezes the scene. It may be empty. Committing twice is an
+ * error. */
 KILN_API bool kiln_scene_commit(kiln_scene *, kiln_report *);
 KILN_API kiln_scene_counts kiln_scene_count(const kiln_scene *);
 KILN_API kiln_bounds kiln_scene_bounds(const kiln_scene *); /* world; after commit */

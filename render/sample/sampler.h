@@ -14,7 +14,7 @@
  * (docs/estimator.md has the measurement). */
 enum { KILN_REPLICATES_LOG2 = 1, KILN_REPLICATES = 1 << KILN_REPLICATES_LOG2 };
 
-/* 2D point before scrambling: everything that one sample's numbers share. */
+/* What all numbers of one sample share: its place in the sequence of its replicate, and what scrambles that. */
 typedef struct sample_point {
     uint32_t index; /* in its replicate's sequence */
     uint32_t seed;  /* of (film seed, pixel, replicate) */

@@ -5,7 +5,7 @@
 #include "render/accel/accel.h"
 #include "render/world/images.h"
 
-/* Surfaces that shine, whether they light others or not. */
+/* Surfaces that shine: lights, which are sampled, and unlit ones, which are only ever met. */
 static void note_emission(world *w) {
     for (uint32_t i = 0; i < w->material_count; i++) {
         const world_material *m = &w->materials[i];

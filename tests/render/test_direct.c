@@ -96,8 +96,8 @@ static void rectangle(void **state) {
     }
 }
 
-/* L = 1 + 0.8 cos(2 (φ − φ0)) sin θ… is smooth; a band of latitude-longitude texels has an exact integral under the
- * piecewise-linear look-up only for constant rows: E = ∫ L cos = Σ over rows of π L (sin² θ_b − sin² θ_t), rows blended. */
+/* Rows of constant texels, brighter towards the horizon: E = 2π ∫ L(θ) sin θ cos θ dθ, L as the bilinear look-up blends
+ * neighbouring rows. */
 static void environment(void **state) {
     (void)state;
     enum { W = 4, H = 64 };
