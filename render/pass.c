@@ -1,10 +1,10 @@
 #include "render/pass.h"
 
 #include <stdlib.h>
-#include <xmmintrin.h>
 
 #include "base/arena.h"
 #include "base/clock.h"
+#include "base/denormals.h"
 #include "base/threads.h"
 
 /* Small enough that its pixels stay coherent, large enough to fill a batch at one sample a pixel. */
@@ -114,7 +114,7 @@ static void run_tile(void *context, size_t item, uint32_t thread) {
     size_t tile = shuffled(p, item);
     uint32_t x0 = (uint32_t)(tile % tiles_across(f)) * TILE, y0 = (uint32_t)(tile / tiles_across(f)) * TILE, count = 0;
     path_sample *samples = p->workers[thread].samples;
-    _mm_setcsr(_mm_getcsr() | 0x8040); /* denormals are zero, in and out: Embree asks for it */
+    (void)denormals_flush(); /* this worker's */
     for (uint32_t m = 0; m < TILE * TILE; m++) {
         uint32_t x = x0 + even_bits(m), y = y0 + even_bits(m >> 1);
         if (x >= f->width || y >= f->height) continue;
@@ -131,7 +131,7 @@ static void run_tile(void *context, size_t item, uint32_t thread) {
 }
 
 void pass_run(pass *p) {
-    unsigned csr = _mm_getcsr();
+    unsigned before = denormals_flush();
     threads_for(p->threads, (size_t)tiles_across(p->film) * tiles_down(p->film), run_tile, p);
-    _mm_setcsr(csr); /* the calling thread's */
+    denormals_restore(before); /* the calling thread's */
 }
