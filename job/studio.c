@@ -20,11 +20,11 @@ typedef struct box {
 } box;
 
 /* A grey card that faces the camera is as bright as under a uniform light of 1, so that base colours come out as
- * authored; turned to the key light it has 1.3 times that, turned away two thirds (tests/job/test_studio.c). */
+ * authored; turned to the key light it has 1.3 times that, turned away nearly 0.6 (tests/job/test_studio.c). */
 static const box boxes[] = {
     {-45, 36, 0.50, 0.45, 0.10, 3.2},  /* key */
     {62, 15, 0.40, 0.70, 0.20, 1.0},   /* fill */
-    {160, 55, 0.70, 0.16, 0.10, 2.4},  /* rim, from behind */
+    {160, 55, 0.70, 0.16, 0.10, 2.8},  /* rim, from behind */
     {0, 88, 0.50, 0.50, 0.25, 0.5},    /* overhead */
 };
 
@@ -34,11 +34,22 @@ static double smooth_step(double from, double to, double x) {
     return t * t * (3 - 2 * t);
 }
 
-/* The cyclorama: light behind the scene with a glow at the horizon, greyer below, a dim room behind the camera. */
+/* Paper behind the scene, as wide as a camera of 60° sees: more than a stop below white, so that white things
+ * stand out, and far enough above black, with a glow at the horizon. */
+static double paper(double height) {
+    return height > 0 ? 0.45 - 0.15 * smooth_step(0, 0.9, height) : 0.45 - 0.10 * smooth_step(0, 0.6, -height);
+}
+
+/* White boards beside it, out of the picture, give back what it takes from the light, and edges their shine. */
+static double boards(double height) {
+    return height > 0 ? 1.3 - 1.0 * smooth_step(0, 0.9, height) : 1.3 - 0.72 * smooth_step(0, 0.9, -height);
+}
+
+/* Both behind the scene, a dim room behind the camera. */
 static double room(dvec3 d) {
-    double behind = smooth_step(-0.5, 0.6, -d.z), height = d.y;
-    double wall = height > 0 ? 0.82 - 0.52 * smooth_step(0, 0.9, height) : 0.82 - 0.24 * smooth_step(0, 0.9, -height);
-    double hall = height > 0 ? 0.24 : 0.24 + 0.20 * smooth_step(0, 0.7, -height);
+    double behind = smooth_step(-0.5, 0.6, -d.z), height = d.y, aside = smooth_step(0.6, 0.9, fabs(d.x));
+    double wall = paper(height) + (boards(height) - paper(height)) * aside;
+    double hall = height > 0 ? 0.24 : 0.24 + 0.40 * smooth_step(0, 0.7, -height);
     return hall + (wall - hall) * behind;
 }
 

@@ -81,7 +81,7 @@ typedef struct kiln_framing {
 /* The nearest camera that sees all of a scene, committed or not, and has it in the middle. */
 KILN_API kiln_camera kiln_camera_frame(const kiln_scene *, const kiln_framing *);
 
-/* Lights a scene by kiln's studio: a light cyclorama, a key light from the upper left of the camera, a fill light from
+/* Lights a scene by kiln's studio: a grey backdrop, a key light from the upper left of the camera, a fill light from
  * its right, a rim light from above behind the scene. azimuth_rad: where the camera stands, as in kiln_framing. */
 KILN_API bool kiln_scene_set_studio(kiln_scene *, double azimuth_rad, double intensity, kiln_report *);
 
