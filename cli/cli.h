@@ -34,7 +34,7 @@ typedef struct cli_command {
 extern const cli_command cli_render, cli_inspect, cli_info, cli_help, cli_version;
 extern const cli_command *const cli_commands[]; /* NULL at the end */
 
-enum { EXIT_USAGE = 2, EXIT_INPUT = 3, EXIT_NOISE_MISSED = 4 };
+enum { EXIT_USAGE = 2 };
 
 /* Whether the command takes the option. */
 bool cli_takes_job(const cli_command *, const option_row *);
@@ -43,9 +43,9 @@ bool cli_takes_talk(const cli_command *, const option_row *);
 /* arguments behind the subcommand. False: reported. */
 bool cli_parse(const cli_command *, int count, char **arguments, cli_args *, kiln_report *);
 
-/* help.c: on standard output */
-void cli_print_overview(void);
-void cli_print_help(const cli_command *);
+/* help.c: on standard output; false: reported */
+bool cli_print_overview(kiln_report *);
+bool cli_print_help(const cli_command *, kiln_report *);
 
 /* Writes text to standard output; false: reported. */
 bool cli_print(const char *text, kiln_report *);

@@ -12,9 +12,8 @@ static int run(const cli_command *command, cli_args *args, kiln_report *report) 
         return kiln_report_exit_code(report);
     }
     char *json = kiln_job_inspect(args->job, args->scene, report);
-    if (!json) return kiln_report_exit_code(report);
-    if (args->talk.json) cli_print(json, report);
-    else {
+    if (args->talk.json && json) cli_print(json, report);
+    else if (json && !kiln_report_exit_code(report)) {
         kiln_text text = {0};
         inspect_text(json, args->talk.verbose, &text);
         cli_print(text.data ? text.data : "", report);

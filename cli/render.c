@@ -59,7 +59,8 @@ static void log_outputs(const json_t *stats) {
 static void log_end(const kiln_job_result *result, const json_t *stats) {
     const json_t *render = json_object_get(stats, "render"), *rules = json_object_get(render, "rules");
     kiln_text line = {0};
-    text_format(&line, "%u samples per pixel in %.2f s", result->stats.spp, result->stats.seconds);
+    text_format(&line, "%u sample%s per pixel in %.2f s", result->stats.spp, result->stats.spp == 1 ? "" : "s",
+                result->stats.seconds);
     if (result->error.known) text_format(&line, ", error %.2f%%", 100 * sqrt(result->error.relmse));
     switch (result->stats.stop) {
     case KILN_STOP_SPP: text_format(&line, "; ended by --spp %.0f", number_in(rules, "spp")); break;
@@ -83,11 +84,6 @@ static void log_times(const json_t *stats) {
     text_format(&line, " peak memory %.0f MB", number_in(json_object_get(stats, "memory"), "peak") * 1e-6);
     log_line(LOG_NORMAL, "%s", line.data ? line.data : "");
     text_free(&line);
-}
-
-static int exit_code(const kiln_report *report, const kiln_job_result *result) {
-    int code = kiln_report_exit_code(report);
-    return code ? code : result->noise_missed ? EXIT_NOISE_MISSED : 0;
 }
 
 static void summarise(const kiln_job *job, const kiln_report *report) {
@@ -114,7 +110,7 @@ static int run(const cli_command *command, cli_args *args, kiln_report *report) 
     listener l = {.args = args, .report = report};
     interrupt_install();
     kiln_job_listen(args->job, &(kiln_job_events){on_phase, on_log, on_progress, interrupt_flag(), &l});
-    bool rendered = kiln_job_render(args->job, args->scene, report);
+    kiln_job_render(args->job, args->scene, report);
     log_progress_end();
     end_phase(&l);
     log_flush(report);
@@ -124,8 +120,8 @@ static int run(const cli_command *command, cli_args *args, kiln_report *report) 
         if (stats) cli_print(stats, report);
         free(stats);
     }
-    kiln_job_result result = kiln_job_last(args->job);
-    return rendered || kiln_report_exit_code(report) ? exit_code(report, &result) : EXIT_FAILURE;
+    int code = kiln_report_exit_code(report); /* with what printing met */
+    return code ? code : kiln_job_last(args->job).exit_code;
 }
 
 const cli_command cli_render = {

@@ -85,7 +85,12 @@ static bool run_all(kiln_job *job, kiln_scene *scene, const char *source, kiln_r
     if (r->rendered) done = finish(r) && done;
     run_phase(r, NULL);
     job->stats = stats_make(r);
-    if (job->options.stats && r->rendered) done = write_stats(job, job->options.stats, report) && done;
+    if (job->options.stats && r->rendered && !write_stats(job, job->options.stats, report)) {
+        done = false;
+        json_decref(job->stats);
+        job->stats = stats_make(r); /* with that error */
+    }
+    r->exit_code = run_exit_code(r);
     kiln_renderer_destroy(r->renderer);
     r->renderer = NULL;
     if (r->owns_scene) kiln_scene_destroy(r->scene);
@@ -105,6 +110,7 @@ kiln_job_result kiln_job_last(const kiln_job *job) {
                              .stats = r->stats,
                              .error = r->error,
                              .exposure = r->exposure,
+                             .exit_code = r->exit_code,
                              .noise_missed = run_missed_noise(r),
                              .outputs_written = r->outputs_written};
 }
@@ -116,10 +122,21 @@ static char *dump(const json_t *json) {
 
 char *kiln_job_stats(const kiln_job *job) { return dump(job->stats); }
 
+static json_t *inspect_failure(const char *path, const kiln_report *report) {
+    json_t *o = json_object(), *source = json_object();
+    put_text(source, "file", path);
+    put(o, "source", source);
+    put(o, "warnings", stats_messages(report, KILN_WARNING));
+    return o;
+}
+
 char *kiln_job_inspect(kiln_job *job, const char *path, kiln_report *report) {
     forget(job);
     json_t *json = NULL;
-    if (!run_start(&job->run, &job->options, &job->events, path, report) || !inspect(&job->run, &json)) return NULL;
+    bool done = run_start(&job->run, &job->options, &job->events, path, report) && inspect(&job->run, &json);
+    if (!done) json = inspect_failure(path, report);
+    put(json, "errors", stats_messages(report, KILN_ERROR));
+    put_count(json, "exit_code", (uint64_t)kiln_report_exit_code(report));
     char *text = dump(json);
     json_decref(json);
     if (!text) report_no_memory(report, "inspecting");

@@ -188,3 +188,9 @@ bool run_missed_noise(const job_run *r) {
     bool reached = r->stats.stop == KILN_STOP_NOISE || (r->error.known && sqrt(r->error.relmse) <= r->rules.noise);
     return r->rendered && asked && !reached;
 }
+int run_exit_code(const job_run *r) {
+    enum { NOISE_MISSED = 4 };
+    int code = kiln_report_exit_code(r->report);
+    return code ? code : run_missed_noise(r) ? NOISE_MISSED : 0;
+}
+

@@ -49,6 +49,7 @@ typedef struct job_run {
     bool rendered;
     kiln_film_error error;
     uint32_t outputs_written;
+    int exit_code; /* at the end */
 } job_run;
 
 bool run_start(job_run *, const job_options *, const kiln_job_events *, const char *source, kiln_report *);
@@ -82,5 +83,7 @@ bool run_check_strict(job_run *);
 
 /* Whether an explicit --noise was not reached. */
 bool run_missed_noise(const job_run *);
+/* What a process should exit with: that of the first error, else 4 for a noise that was not reached, else 0. */
+int run_exit_code(const job_run *);
 
 #endif

@@ -237,4 +237,5 @@ json_t *stats_make(const job_run *r) {
     put(o, "warnings", stats_messages(r->report, KILN_WARNING));
     put(o, "errors", stats_messages(r->report, KILN_ERROR));
     return o;
+    put_count(o, "exit_code", (uint64_t)run_exit_code(r));
 }

@@ -48,16 +48,18 @@ typedef struct kiln_job_result {
     kiln_render_stats stats;
     kiln_film_error error; /* of the picture as exposed */
     double exposure;       /* stops, chosen or given */
+    int exit_code;         /* of the first error; 4: none, and noise_missed; 0 */
     bool noise_missed;     /* a noise goal was set explicitly, and another rule ended the render first */
     uint32_t outputs_written;
 } kiln_job_result;
 KILN_API kiln_job_result kiln_job_last(const kiln_job *);
 
-/* The same and everything else, as JSON; free(). NULL: out of memory. */
+/* The same and everything else, as JSON; free(). exit_code is what a process should exit with. NULL: out of memory. */
 KILN_API char *kiln_job_stats(const kiln_job *);
 
 /* What an asset holds and what kiln would make of it, as JSON; free(). The job's options choose camera, size and
- * subdivision. NULL: an error was added. */
+ * subdivision. Where an error was added it has no more than source, warnings, errors and exit_code. NULL: out of memory.
+ */
 KILN_API char *kiln_job_inspect(kiln_job *, const char *path, kiln_report *);
 
 /* What the machine and the libraries offer, as JSON; free(). The job's options choose the colour config. */

@@ -84,6 +84,30 @@ static void warnings_are_on_standard_error_and_strict_counts_them(void **state) 
     result_free(&r);
 }
 
+/* A machine that reads learns what went wrong where it reads everything else. */
+static void failures_are_json_too(void **state) {
+    const place *p = *state;
+    const char *const commands[] = {"inspect", "render"};
+    for (int i = 0; i < 2; i++) {
+        result r = run(p, commands[i], "missing.glb", "--json");
+        assert_int_equal(r.code, 3);
+        json_t *json = json_loads(r.out, 0, NULL);
+        assert_non_null(json);
+        assert_int_equal(json_integer_value(json_object_get(json, "exit_code")), 3);
+        assert_int_equal(json_array_size(json_object_get(json, "errors")), 1);
+        assert_non_null(json_object_get(json, "warnings"));
+        json_decref(json);
+        result_free(&r);
+    }
+    result r = run(p, "render", PAIR("unlit_a"), "--size", "8x8", "--noise", "0.01%", "--spp", "2", "--json");
+    assert_int_equal(r.code, 4);
+    assert_non_null(strstr(r.out, "\"exit_code\": 4"));
+    result_free(&r);
+    r = run(p, "inspect", PAIR("unlit_a"), "--json");
+    assert_non_null(strstr(r.out, "\"exit_code\": 0"));
+    result_free(&r);
+}
+
 static void the_machine_is_shown(void **state) {
     result r = run(*state, "info");
     assert_int_equal(r.code, 0);
@@ -103,6 +127,7 @@ static void the_machine_is_shown(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         CLI_TEST(assets_are_shown), CLI_TEST(the_tree_is_shown), CLI_TEST(textures_are_shown_with_their_transfer), CLI_TEST(json_has_the_same),
-        CLI_TEST(warnings_are_on_standard_error_and_strict_counts_them), CLI_TEST(the_machine_is_shown)};
+        CLI_TEST(warnings_are_on_standard_error_and_strict_counts_them), CLI_TEST(failures_are_json_too),
+        CLI_TEST(the_machine_is_shown)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,6 +32,13 @@ static void the_default_output_is_here_and_named_by_the_asset(void **state) {
     result_free(&r);
 }
 
+static void one_is_not_a_plural(void **state) {
+    result r = run(*state, "render", SCENE, "--size", "8x8", "--spp", "1");
+    assert_int_equal(r.code, 0);
+    assert_non_null(strstr(r.err, "1 sample per pixel"));
+    result_free(&r);
+}
+
 static void quiet_is_quiet(void **state) {
     result r = run(*state, "render", SCENE, "--size", "8x8", "--spp", "1", "--quiet");
     assert_int_equal(r.code, 0);
@@ -334,6 +341,7 @@ static void a_limit_of_file_sizes_is_an_error_like_any_other(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {CLI_TEST(the_default_output_is_here_and_named_by_the_asset),
+                                       CLI_TEST(one_is_not_a_plural),
                                        CLI_TEST(quiet_is_quiet),
                                        CLI_TEST(progress_in_a_file_is_lines),
                                        CLI_TEST(a_picture_goes_through_a_pipe),

@@ -204,6 +204,23 @@ static void missed_goals_are_told(void **state) {
     kiln_job_destroy(job);
 }
 
+/* A millisecond is not enough for a sample in every pixel: the picture is written, and the holes are counted. */
+static void budgets_that_leave_holes_are_told(void **state) {
+    fixture *f = *state;
+    char png[256];
+    kiln_job *job = job_of(f, (const char *const[]){"size", "512x512", "budget", "1ms", "output",
+                                                    path_in(f, "holes.png", png), NULL});
+    assert_done(f, kiln_job_render(job, PAIR("roughness_factor_a"), f->report));
+    assert_true(kiln_job_last(job).stats.unsampled > 0 && kiln_job_last(job).outputs_written == 1);
+    bool warned = false;
+    for (size_t i = 0; i < kiln_report_size(f->report); i++) {
+        kiln_message m = kiln_report_message(f->report, i);
+        warned |= m.severity == KILN_WARNING && strstr(m.what, "pixels are black") && !strcmp(m.where, "--budget");
+    }
+    assert_true(warned);
+    kiln_job_destroy(job);
+}
+
 /* Lights in candela and lux have no natural exposure; what is not shown, and not judged by its noise, needs none. */
 static void exposures_are_chosen_where_lights_have_units(void **state) {
     fixture *f = *state;
@@ -283,7 +300,8 @@ static void assets_are_inspected(void **state) {
                                         "materials",        "images",
                                         "lights",           "cameras",
                                         "rendering.light",  "memory_estimate.total",
-                                        "warnings"};
+                                        "warnings",         "errors",
+                                        "exit_code"};
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
         if (!find(json, paths[i])) fail_msg("%s is missing", paths[i]);
     const json_t *lights = find(json, "lights"), *extensions = find(json, "source.extensions");
@@ -298,8 +316,15 @@ static void assets_are_inspected(void **state) {
     assert_true(spot && known);
     json_decref(json);
     free(text);
-    assert_null(kiln_job_inspect(job, PAIR("no_such_file"), f->report));
+    text = kiln_job_inspect(job, PAIR("no_such_file"), f->report);
     assert_int_equal(kiln_report_exit_code(f->report), 3);
+    json = json_loads(text, 0, NULL);
+    assert_int_equal(json_integer_value(find(json, "exit_code")), 3);
+    assert_int_equal(json_array_size(find(json, "errors")), 1);
+    assert_non_null(find(json, "source.file"));
+    assert_null(find(json, "meshes"));
+    json_decref(json);
+    free(text);
     kiln_job_destroy(job);
 }
 
@@ -328,6 +353,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {JOB_TEST(a_file_becomes_pictures_and_statistics),
                                        JOB_TEST(one_failing_output_does_not_take_the_others_along),
                                        JOB_TEST(nothing_is_rendered_when_an_output_cannot_be_written),
+                                       JOB_TEST(budgets_that_leave_holes_are_told),
                                        JOB_TEST(cancelled_renders_are_written),
                                        JOB_TEST(cancelled_before_it_began_nothing_is_left),
                                        JOB_TEST(strict_refuses_warnings_before_it_renders),
