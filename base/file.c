@@ -22,7 +22,7 @@ static bool read_error(const char *path, const kiln_where *where, kiln_report *r
                             "it cannot be read: %s", reason);
     }
     kiln_where here = where ? *where : where_root(*path ? path : "''");
-    const char *subject = where ? path : "the file";
+    const char *subject = where && where->parent ? path : "the file"; /* else the place is the file's name */
     if (error == ENOENT || error == ENOTDIR)
         return report_error(report, KILN_CODE_FILE_MISSING, &here, "check the path", "%s does not exist", subject);
     return report_error(report, KILN_CODE_FILE_UNREADABLE, &here, "check the path and its permissions",

@@ -63,23 +63,22 @@ static void append_options(kiln_text *out, const cli_command *c) {
     }
 }
 
-static void print(kiln_text *text) {
-    kiln_report *report = kiln_report_create();
-    if (report) cli_print(text->data ? text->data : "", report);
-    kiln_report_destroy(report);
+static bool print(kiln_text *text, kiln_report *report) {
+    bool done = text->data ? cli_print(text->data, report) : report_no_memory(report, "printing help");
     text_free(text);
+    return done;
 }
 
-void cli_print_help(const cli_command *c) {
+bool cli_print_help(const cli_command *c, kiln_report *report) {
     kiln_text out = {0};
     text_format(&out, "kiln %s%s%s [options]: %s\n", c->name, c->argument ? " " : "", c->argument ? c->argument : "",
                 c->summary);
     append_options(&out, c);
     if (c->examples) text_format(&out, "\nExamples\n%s\n", c->examples);
-    print(&out);
+    return print(&out, report);
 }
 
-void cli_print_overview(void) {
+bool cli_print_overview(kiln_report *report) {
     kiln_text out = {0};
     text_format(&out, "kiln %s: a physically based renderer for glTF assets\n\n", kiln_version());
     for (size_t i = 0; cli_commands[i]; i++) {
@@ -87,21 +86,19 @@ void cli_print_overview(void) {
         text_format(&out, "  kiln %-8s %-8s %s\n", c->name, c->argument ? c->argument : "", c->summary);
     }
     text_append(&out, "\n'kiln COMMAND --help' explains the options. Try: kiln render helmet.glb\n");
-    print(&out);
+    return print(&out, report);
 }
 
 static int run_help(const cli_command *command, cli_args *args, kiln_report *report) {
     (void)command;
-    if (!args->scene) {
-        cli_print_overview();
-        return 0;
-    }
-    for (size_t i = 0; cli_commands[i]; i++)
-        if (strcmp(cli_commands[i]->name, args->scene) == 0) {
-            cli_print_help(cli_commands[i]);
-            return 0;
-        }
-    report_error(report, KILN_CODE_USAGE, NULL, "'kiln help' lists the commands", "unknown command '%s'", args->scene);
+    const cli_command *asked = NULL;
+    for (size_t i = 0; args->scene && cli_commands[i]; i++)
+        if (strcmp(cli_commands[i]->name, args->scene) == 0) asked = cli_commands[i];
+    if (!args->scene) cli_print_overview(report);
+    else if (asked) cli_print_help(asked, report);
+    else
+        report_error(report, KILN_CODE_USAGE, NULL, "'kiln help' lists the commands", "unknown command '%s'",
+                     args->scene);
     return kiln_report_exit_code(report);
 }
 
@@ -109,9 +106,8 @@ static int run_version(const cli_command *command, cli_args *args, kiln_report *
     (void)command, (void)args;
     kiln_text out = {0};
     text_format(&out, "kiln %s\n", kiln_version());
-    bool done = cli_print(out.data ? out.data : "", report);
-    text_free(&out);
-    return done ? 0 : kiln_report_exit_code(report);
+    print(&out, report);
+    return kiln_report_exit_code(report);
 }
 
 const cli_command cli_help = {.name = "help",

@@ -11,9 +11,12 @@
 
 #include "base/clock.h"
 
+enum { COUNTS_KEPT = 256 };
+
 static struct {
     log_level level;
     size_t printed;   /* messages of the report */
+    uint64_t counts[COUNTS_KEPT]; /* of the first ones, as they were printed */
     bool line_is_up;  /* the progress line */
     double last_line; /* when it was written where there is no terminal */
 } state = {.level = LOG_NORMAL};
@@ -58,7 +61,7 @@ static void append_harmless(kiln_text *out, const char *text) {
     for (const char *c = text; *c; c++) text_append_bytes(out, (unsigned char)*c < 32 || *c == 127 ? "?" : c, 1);
 }
 
-static void print_message(const kiln_message *m) {
+static void print_message(const kiln_message *m, const char *again) {
     static const char *const names[] = {[KILN_NOTE] = "note", [KILN_WARNING] = "warning", [KILN_ERROR] = "error"};
     static const char *const colors[] = {
         [KILN_NOTE] = "\033[36m", [KILN_WARNING] = "\033[33m", [KILN_ERROR] = "\033[31m"};
@@ -69,7 +72,7 @@ static void print_message(const kiln_message *m) {
     append_harmless(&line, m->where);
     if (*m->where) text_append(&line, ": ");
     append_harmless(&line, m->what);
-    if (m->count > 1) text_format(&line, " (%llu times)", (unsigned long long)m->count);
+    if (m->count > 1) text_format(&line, " (%llu times%s)", (unsigned long long)m->count, again);
     if (*m->remedy) {
         text_append(&line, "; ");
         append_harmless(&line, m->remedy);
@@ -83,17 +86,19 @@ static void print_message(const kiln_message *m) {
 void log_flush(const kiln_report *report) {
     for (; state.printed < kiln_report_size(report); state.printed++) {
         kiln_message m = kiln_report_message(report, state.printed);
-        print_message(&m);
+        print_message(&m, "");
+        if (state.printed < COUNTS_KEPT) state.counts[state.printed] = m.count;
     }
 }
 
 void log_warning_counts(const kiln_report *report) {
-    uint64_t all = kiln_report_count(report, KILN_WARNING), kinds = 0;
-    for (size_t i = 0; i < kiln_report_size(report); i++)
-        kinds += kiln_report_message(report, i).severity == KILN_WARNING;
-    if (all)
-        log_line(LOG_NORMAL, "%llu warning%s%s", (unsigned long long)all, all == 1 ? "" : "s",
-                 all > kinds ? ", some more than once" : "");
+    uint64_t all = kiln_report_count(report, KILN_WARNING);
+    for (size_t i = 0; i < state.printed && i < COUNTS_KEPT; i++) {
+        kiln_message m = kiln_report_message(report, i);
+        if (m.count > state.counts[i]) print_message(&m, " in all");
+        state.counts[i] = m.count;
+    }
+    if (all) log_line(LOG_NORMAL, "%llu warning%s", (unsigned long long)all, all == 1 ? "" : "s");
 }
 
 /* "1:05", "2:03:04" */

@@ -11,7 +11,7 @@ void log_line(log_level, const char *format, ...) KILN_PRINTF(2, 3);
 
 /* Messages that were not printed yet: warnings and notes from LOG_NORMAL on. */
 void log_flush(const kiln_report *);
-/* At the end: how often warnings came in all, where more than were printed. */
+/* At the end: the messages again that came more often since they were printed, and the number of warnings. */
 void log_warning_counts(const kiln_report *);
 
 /* The progress line is taken off before anything is printed, and drawn again by the next call. */

@@ -35,8 +35,8 @@ static int run(const cli_command *command, int count, char **arguments, kiln_rep
     if (!args.job) report_no_memory(report, "starting");
     else if (!cli_parse(command, count, arguments, &args, report)) code = kiln_report_exit_code(report);
     else if (args.talk.help) {
-        cli_print_help(command);
-        code = 0;
+        cli_print_help(command, report);
+        code = kiln_report_exit_code(report);
     } else code = command->run(command, &args, report);
     kiln_job_destroy(args.job);
     return code;

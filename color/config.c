@@ -154,12 +154,15 @@ static void append_names(kiln_text *text, const name_list *known) {
 bool color_unknown_name(const kiln_color *color, const char *what, const char *given, const name_list *known,
                         kiln_report *report) {
     kiln_text text = {0}, remedy = {0};
+    if (known->count) text_append(&text, known->count == 1 ? "there is: " : "there are: ");
+    else text_append(&text, "there is none");
     append_names(&text, known);
     const char *nearest = text_nearest(given, known->names, known->count);
     if (nearest) text_format(&remedy, "did you mean \"%s\"?", nearest);
-    else text_append(&remedy, "choose one of them, or another config with --ocio or $OCIO");
-    report_error(report, KILN_CODE_COLOR, &color->where, remedy.data, "%s \"%s\" does not exist; there %s: %s", what,
-                 given, known->count == 1 ? "is" : "are", text.data ? text.data : "none");
+    else if (known->count) text_append(&remedy, "choose one of them, or another config with --ocio or $OCIO");
+    else text_append(&remedy, "choose another config with --ocio or $OCIO");
+    report_error(report, KILN_CODE_COLOR, &color->where, remedy.data, "%s \"%s\" does not exist; %s", what, given,
+                 text.data ? text.data : "");
     text_free(&text);
     text_free(&remedy);
     return false;

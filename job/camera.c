@@ -28,8 +28,11 @@ static bool no_such_camera(const kiln_scene *scene, const char *wanted, kiln_rep
     kiln_where where = where_root("--camera");
     kiln_text remedy = {0};
     text_append(&remedy, scene->camera_count ? "give auto or one of" : "leave it out: auto frames the scene");
-    for (uint32_t i = 0; i < scene->camera_count && i < 20; i++)
-        text_format(&remedy, "%s %u '%.60s'", i ? "," : "", i, scene->cameras[i].name);
+    for (uint32_t i = 0; i < scene->camera_count && i < 20; i++) {
+        const char *name = scene->cameras[i].name;
+        text_format(&remedy, "%s %u", i ? "," : "", i);
+        if (*name) text_format(&remedy, " '%.60s'", name);
+    }
     report_error(report, KILN_CODE_USAGE, &where, remedy.data, "the scene has no camera '%s'", wanted);
     text_free(&remedy);
     return false;

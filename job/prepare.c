@@ -113,9 +113,10 @@ bool run_light(job_run *r) {
         !kiln_scene_commit(r->scene, r->report) || (r->lighting.doubtful && !run_try_emitters(r)))
         return false;
     kiln_scene_counts c = kiln_scene_count(r->scene);
-    run_log(r, "%s: %u instance%s of %u mesh%s, %llu triangles; camera %s, light %s", path_base(r->source), c.instances,
-            c.instances == 1 ? "" : "s", c.meshes, c.meshes == 1 ? "" : "es", (unsigned long long)c.triangles,
-            r->view.name, lighting_describe(&r->lighting, r->options));
+    run_log(r, "%s: %u instance%s of %u mesh%s, %llu triangle%s; camera %s, light %s", path_base(r->source),
+            c.instances, c.instances == 1 ? "" : "s", c.meshes, c.meshes == 1 ? "" : "es",
+            (unsigned long long)c.triangles, c.triangles == 1 ? "" : "s", r->view.name,
+            lighting_describe(&r->lighting, r->options));
     if (r->color) run_log(r, "colours: %s", kiln_color_describe(r->color));
     return true;
 }

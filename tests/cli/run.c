@@ -55,11 +55,12 @@ static void redirect(const char *folder, const char *name, int to) {
 static void become_program(const place *p, const char *const *arguments) {
     const char *argv[64] = {"kiln"};
     size_t count = 1;
-    const char *input = "/dev/null";
+    const char *input = "/dev/null", *output = NULL;
     unsetenv("OCIO");
     unsetenv("KILN_THREADS");
     for (bool environment = true; *arguments && count < 63; arguments++) {
         if (**arguments == '<') input = *arguments + 1;
+        else if (**arguments == '>') output = *arguments + 1;
         else if (environment && strchr(*arguments, '=') && **arguments != '-') putenv((char *)*arguments);
         else {
             argv[count++] = *arguments;
@@ -69,7 +70,9 @@ static void become_program(const place *p, const char *const *arguments) {
     if (chdir(p->folder)) _exit(125);
     redirect(p->streams, "out", STDOUT_FILENO);
     redirect(p->streams, "err", STDERR_FILENO);
-    int fd = open(input, O_RDONLY);
+    int fd = output ? open(output, O_WRONLY) : STDOUT_FILENO;
+    if (fd < 0 || dup2(fd, STDOUT_FILENO) < 0) _exit(125);
+    fd = open(input, O_RDONLY);
     if (fd < 0 || dup2(fd, STDIN_FILENO) < 0) _exit(125);
     execv(KILN_PROGRAM, (char *const *)argv);
     _exit(125);

@@ -26,7 +26,8 @@ typedef struct result {
     size_t out_size, err_size;
 } result;
 
-/* Arguments end with NULL; "NAME=value" before the first other one is environment. "<file" is standard input. */
+/* Arguments end with NULL; "NAME=value" before the first other one is environment. "<file" is standard input,
+ * ">file" standard output. */
 result run_list(const place *, const char *const *arguments);
 void result_free(result *);
 #define run(place_, ...) run_list(place_, (const char *const[]){__VA_ARGS__, NULL})

@@ -42,6 +42,7 @@ static void assert_invalid(const place *p, const char *file, const char *text) {
 static void files_that_are_not_assets(void **state) {
     const place *p = *state;
     assert_invalid(p, "missing.glb", "missing.glb: the file does not exist");
+    assert_invalid(p, "", "'': the file does not exist");
     assert_invalid(p, p->folder, "Is a directory");
     write_file(p, "empty.glb", "", 0);
     assert_invalid(p, "empty.glb", "the file is empty");
@@ -116,7 +117,21 @@ static void surroundings_that_cannot_be_read(void **state) {
     assert_refused(p, 3, "cut.hdr: the Radiance HDR data ends too early", "render", PAIR("unlit_a"), "--env", "cut.hdr",
                    "--quiet");
     assert_refused(p, 3, "cut.hdr: the Radiance HDR data ends too early", "inspect", PAIR("unlit_a"), "--env", "cut.hdr");
-    assert_refused(p, 3, "does not exist", "render", PAIR("unlit_a"), "--ocio", "c.ocio");
+    assert_refused(p, 3, "c.ocio: the file does not exist", "render", PAIR("unlit_a"), "--ocio", "c.ocio");
+    assert_refused(p, 3, "c.ocio ($OCIO): the file does not exist", "OCIO=c.ocio", "render", PAIR("unlit_a"));
+}
+
+/* They are called by name, and nobody is told to look for them in a folder. */
+static void streams_that_fail(void **state) {
+    const place *p = *state;
+    static const char glb[] = "glTF\2\0\0\0\130\0\0\0\104\0\0\0JSON"
+                              "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":1,\"uri\":\"a\"}]}  ";
+    char input[128];
+    write_file(p, "a.glb", glb, sizeof glb - 1);
+    snprintf(input, sizeof input, "<%s/a.glb", p->folder);
+    assert_refused(p, 3, "give the asset by its path", "inspect", "-", input);
+    snprintf(input, sizeof input, "<%s", p->folder);
+    assert_refused(p, 3, "standard input: it cannot be read: Is a directory", "inspect", "-", input);
 }
 
 static void outputs_that_cannot_be_written(void **state) {
@@ -148,6 +163,7 @@ int main(void) {
                                        CLI_TEST(positions_that_are_no_numbers),
                                        CLI_TEST(pictures_that_cannot_be_read),
                                        CLI_TEST(surroundings_that_cannot_be_read),
+                                       CLI_TEST(streams_that_fail),
                                        CLI_TEST(outputs_that_cannot_be_written),
                                        CLI_TEST(pictures_that_no_memory_holds),
                                        CLI_TEST(names_cannot_write_lines)};

@@ -35,6 +35,7 @@ static void wrong_usage_is_one_line_and_exit_code_2(void **state) {
     assert_refused(p, 2, "view \"Filmic\" does not exist", "render", SCENE, "--view", "Filmic");
     assert_refused(p, 2, "display \"CRT\" does not exist", "render", SCENE, "--display", "CRT");
     assert_refused(p, 2, "no camera 'Z'", "render", SCENE, "--camera", "Z");
+    assert_refused(p, 2, "look \"nope\" does not exist; there is none; choose another", "render", SCENE, "--look", "nope");
 }
 
 /* Options of the contract that do not exist yet are unknown like any other. */
@@ -115,6 +116,16 @@ static void help_is_on_standard_output(void **state) {
     result_free(&r);
 }
 
+static void what_cannot_be_printed_is_an_error(void **state) {
+    const char *const calls[][3] = {{"help"}, {"--help"}, {"help", "render"}, {"render", "--help"}, {"version"}, {"info"}};
+    for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
+        result r = run(*state, calls[i][0], ">/dev/full", calls[i][1]);
+        assert_int_equal(r.code, 1);
+        assert_non_null(strstr(r.err, "error: standard output: it cannot be written: No space left"));
+        result_free(&r);
+    }
+}
+
 /* No line of help is wider than 100 characters. */
 static void help_fits_a_terminal(void **state) {
     result r = run(*state, "render", "--help");
@@ -144,6 +155,7 @@ int main(void) {
                                        CLI_TEST(options_have_several_spellings),
                                        CLI_TEST(the_command_line_goes_before_the_environment),
                                        CLI_TEST(help_is_on_standard_output),
+                                       CLI_TEST(what_cannot_be_printed_is_an_error),
                                        CLI_TEST(help_fits_a_terminal),
                                        CLI_TEST(the_version_is_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -140,7 +140,7 @@ static void unknown_displays_views_and_looks(void **state) {
                 "view \"Khronos PBR\" does not exist; there are: \"Khronos PBR Neutral\", \"ACES 1.0 - SDR Video\"",
                 "choose one of them");
     refuse_view(color, (kiln_view_options){.look = "warm"}, KILN_CODE_COLOR, "",
-                "look \"warm\" does not exist; there are: none", "choose one of them");
+                "look \"warm\" does not exist; there is none", "choose another config");
     const double bad[] = {NAN, INFINITY, 65, -65};
     for (size_t i = 0; i < 4; i++)
         refuse_view(color, (kiln_view_options){.exposure = bad[i]}, KILN_CODE_USAGE, "", "stops is not between",
