@@ -1,5 +1,7 @@
 #include "render/context.h"
 
+#include <math.h>
+
 #include "base/hash.h"
 
 /* The first bounces must not be cut: most of the light is in them. */
@@ -11,14 +13,41 @@ static void set_roulette(path_context *c, const kiln_roulette *r) {
     c->roulette_p = (float)r->p;
 }
 
+/* What a program cannot have meant; NaN is refused with the rest. */
+static const char *what_is_unknown(const kiln_render_options *o) {
+    return (unsigned)o->estimator > KILN_ESTIMATOR_BSDF            ? "estimator"
+           : (unsigned)o->roulette.kind > KILN_ROULETTE_THROUGHPUT ? "kind of roulette"
+           : (unsigned)o->sampler > KILN_SAMPLER_INDEPENDENT       ? "sampler"
+           : (unsigned)o->light_sampling > KILN_LIGHTS_UNIFORM     ? "choice of lights"
+           : (unsigned)o->filter > KILN_PIXEL_BOX                  ? "pixel filter"
+           : (unsigned)o->background > KILN_BACKGROUND_COLOR       ? "background"
+                                                                   : NULL;
+}
+
+enum { FILTER_WIDTH_MAX = 64 }; /* a few pixels are a filter; past that, camera rays leave the picture's surroundings */
+
+static bool is_amount(double v) { return v >= 0 && isfinite(v); }
+
 static bool check_options(const kiln_render_options *o, kiln_report *report) {
+    const char *unknown = what_is_unknown(o);
+    const float *color = o->background_color;
+    if (unknown)
+        return report_error(report, KILN_CODE_USAGE, NULL, "give one of kiln/render.h", "the %s is not a known one",
+                            unknown);
     if (o->roulette.kind == KILN_ROULETTE_FIXED && !(o->roulette.p > 0 && o->roulette.p <= 1))
         return report_error(report, KILN_CODE_USAGE, NULL, "give a probability above 0, at most 1",
                             "fixed roulette with the probability %g", o->roulette.p);
     if (o->spp > FIXED_SAMPLES_MAX)
         return report_error(report, KILN_CODE_USAGE, NULL, "give at most 16777216", "%u samples per pixel", o->spp);
-    if (o->noise < 0 || o->budget_seconds < 0 || o->filter_width < 0 || o->error_scale < 0)
-        return report_error(report, KILN_CODE_USAGE, NULL, "give 0 or more", "noise, budget or filter width is negative");
+    if (!is_amount(o->noise) || !is_amount(o->budget_seconds) || !is_amount(o->error_scale))
+        return report_error(report, KILN_CODE_USAGE, NULL, "give finite numbers that are not negative",
+                            "noise %g, budget %g s, error scale %g", o->noise, o->budget_seconds, o->error_scale);
+    if (!(is_amount(o->filter_width) && o->filter_width <= FILTER_WIDTH_MAX))
+        return report_error(report, KILN_CODE_USAGE, NULL, "give at most 64 pixels", "a filter %g pixels wide",
+                            o->filter_width);
+    if (!is_amount((double)color[0]) || !is_amount((double)color[1]) || !is_amount((double)color[2]))
+        return report_error(report, KILN_CODE_USAGE, NULL, "give finite numbers that are not negative",
+                            "the background colour %g, %g, %g", (double)color[0], (double)color[1], (double)color[2]);
     return true;
 }
 

@@ -33,7 +33,7 @@ void pass_free_workers(pass *p) {
 
 uint64_t pass_samples(const pass *p) {
     uint64_t sum = 0;
-    for (uint32_t t = 0; t < p->threads; t++) sum += p->workers[t].traced;
+    for (uint32_t t = 0; t < p->threads; t++) sum += atomic_load_explicit(&p->workers[t].traced, memory_order_relaxed);
     return sum;
 }
 
@@ -44,7 +44,7 @@ static void discard(const pass *p, pass_worker *w, kiln_discard cause, const pat
 }
 
 /* A radiance that the film can hold; what is not one is counted and black. */
-static void check(const pass *p, pass_worker *w, const path_sample *at, film_sample *s) {
+static void check_radiance(const pass *p, pass_worker *w, const path_sample *at, film_sample *s) {
     bool fits = true, real = true;
     for (int k = 0; k < 3; k++) {
         real = real && s->radiance[k] >= 0.0f && s->radiance[k] < INFINITY;
@@ -55,6 +55,16 @@ static void check(const pass *p, pass_worker *w, const path_sample *at, film_sam
     s->radiance[0] = s->radiance[1] = s->radiance[2] = 0.0f;
 }
 
+/* The same for what else it says of the first surface. */
+static void check_aovs(const pass *p, pass_worker *w, const path_sample *at, film_sample *s) {
+    bool fits = !p->film->aovs[KILN_AOV_DEPTH] || fixed_fits(s->depth);
+    for (int k = 0; k < 3; k++) fits = fits && fixed_fits(s->albedo[k]) && fixed_fits(s->normal[k]);
+    if (fits) return;
+    discard(p, w, KILN_DISCARD_OVERFLOW, at);
+    s->depth = 0.0f;
+    for (int k = 0; k < 3; k++) s->albedo[k] = s->normal[k] = 0.0f;
+}
+
 static void store(const pass *p, pass_worker *w, uint32_t count) {
     const path_output *o = &w->batch->out;
     const uint32_t *crop = p->film->desc.crop;
@@ -63,18 +73,20 @@ static void store(const pass *p, pass_worker *w, uint32_t count) {
         film_sample s = {.radiance = {o->r[i], o->g[i], o->b[i]}, .alpha = o->alpha[i], .depth = o->depth[i]};
         for (int k = 0; k < 3; k++) s.albedo[k] = o->albedo[k][i], s.normal[k] = o->normal[k][i];
         if (o->refused[i]) discard(p, w, KILN_DISCARD_RAY, at);
-        check(p, w, at, &s);
+        check_radiance(p, w, at, &s);
+        if (s.alpha > 0.0f) check_aovs(p, w, at, &s);
         film_add(p->film, at->x - crop[0], at->y - crop[1], &s);
         const float beyond[3] = {o->beyond_r[i], o->beyond_g[i], o->beyond_b[i]};
         for (int k = 0; k < 3; k++)
             if (fixed_fits(beyond[k])) w->beyond[k] += fixed_from_float(beyond[k]);
     }
-    w->traced += count;
+    atomic_fetch_add_explicit(&w->traced, count, memory_order_relaxed);
 }
 
 static bool must_stop(pass *p, uint32_t thread) {
     if (thread == 0 && p->tick) p->tick(p->tick_user);
-    if ((p->cancel && *p->cancel) || (p->deadline > 0 && clock_seconds() >= p->deadline)) atomic_store(&p->stopped, true);
+    bool cancelled = p->cancel && __atomic_load_n(p->cancel, __ATOMIC_RELAXED);
+    if (cancelled || (p->deadline > 0 && clock_seconds() >= p->deadline)) atomic_store(&p->stopped, true);
     return atomic_load(&p->stopped);
 }
 

@@ -11,7 +11,7 @@
 typedef struct pass_worker {
     batch *batch;
     path_sample *samples;
-    uint64_t traced; /* samples */
+    _Atomic uint64_t traced; /* samples; the one count that others read while the worker works */
     uint64_t discarded[KILN_DISCARD_COUNT];
     uint64_t discarded_first[KILN_DISCARD_COUNT]; /* reading-order number of the first pixel */
     fixed beyond[3];
@@ -37,9 +37,9 @@ typedef struct pass {
 bool pass_make_workers(pass *); /* false: out of memory */
 void pass_free_workers(pass *);
 
-/* Brings every pixel to `target` samples, unless stopped. */
+/* Brings every pixel to `target` samples, unless stopped: then some are left where they were. */
 void pass_run(pass *);
 
-uint64_t pass_samples(const pass *); /* traced so far, by all workers; exact between passes */
+uint64_t pass_samples(const pass *); /* traced so far, by all workers; exact between passes, but never torn */
 
 #endif

@@ -52,7 +52,7 @@ typedef struct run {
     uint32_t spp_limit;
     double started, last_tick, error, scale;
     uint64_t samples_before; /* that the film came with */
-    uint32_t spp_before;
+    uint32_t spp_before, spp; /* in every pixel: then, and after the last pass */
 } run;
 
 static double seconds(const run *r) { return clock_seconds() - r->started; }
@@ -70,7 +70,7 @@ static double fraction(const run *r, uint64_t samples) {
 static void report_progress(run *r) {
     uint64_t samples = pass_samples(&r->pass);
     double done = fraction(r, samples), elapsed = seconds(r);
-    kiln_progress p = {.spp_done = kiln_film_spp(r->film),
+    kiln_progress p = {.spp_done = r->spp,
                        .samples = samples,
                        .fraction = done,
                        .seconds = elapsed,
@@ -87,10 +87,11 @@ static void tick(void *user) {
     report_progress(r);
 }
 
-/* Powers of two, so that what --noise decides on does not depend on the machine; with a budget in smaller steps, so that
- * little is left unfinished when the time is up. */
-static uint32_t next_target(const run *r, uint32_t spp) {
-    uint32_t next = 4;
+/* Powers of two, so that what --noise decides on does not depend on the machine. With a budget one sample comes first,
+ * so that the time is enough for a whole picture if it can be, and then smaller steps, so that little is left
+ * unfinished when it is up. */
+static uint32_t next_target(const run *r) {
+    uint32_t next = r->options->budget_seconds > 0 ? 1 : 4, spp = r->spp;
     while (next <= spp) next *= 2;
     if (r->options->budget_seconds > 0 && spp > r->spp_before) {
         double each = seconds(r) / (spp - r->spp_before), step = 0.1 * r->options->budget_seconds / each;
@@ -104,26 +105,31 @@ static bool is_power_of_two(uint32_t n) { return n && !(n & (n - 1)); }
 /* Fewer samples are not evidence enough to stop on. */
 enum { NOISE_SPP_MIN = 16 };
 
+/* The estimate takes as long as a sample or so in every pixel: it is made when somebody wants it. */
+static bool is_quiet_enough(run *r) {
+    const kiln_render_options *o = r->options;
+    if (!is_power_of_two(r->spp) || !(o->noise > 0 || o->progress)) return false;
+    kiln_film_error e = kiln_film_estimate_error(r->film, r->scale);
+    r->error = e.known ? sqrt(e.relmse) : -1;
+    return o->noise > 0 && r->spp >= NOISE_SPP_MIN && e.known && r->error <= o->noise;
+}
+
 static kiln_stop run_passes(run *r) {
     const kiln_render_options *o = r->options;
     for (;;) {
-        uint32_t spp = kiln_film_spp(r->film);
-        if (spp > 0) {
-            kiln_film_error e = kiln_film_estimate_error(r->film, r->scale);
-            r->error = e.known ? sqrt(e.relmse) : -1;
-        }
-        if (o->noise > 0 && is_power_of_two(spp) && spp >= NOISE_SPP_MIN && r->error >= 0 && r->error <= o->noise)
-            return KILN_STOP_NOISE;
-        if (spp >= r->spp_limit) return KILN_STOP_SPP;
-        r->pass.target = next_target(r, spp);
+        r->spp = kiln_film_spp(r->film);
+        if (is_quiet_enough(r)) return KILN_STOP_NOISE;
+        if (r->spp >= r->spp_limit) return KILN_STOP_SPP;
+        r->pass.target = next_target(r);
         pass_run(&r->pass);
-        if (o->cancel && *o->cancel) return KILN_STOP_CANCELLED;
+        if (o->cancel && __atomic_load_n(o->cancel, __ATOMIC_RELAXED)) return KILN_STOP_CANCELLED;
         if (atomic_load(&r->pass.stopped)) return KILN_STOP_BUDGET;
     }
 }
 
 static void collect(run *r, kiln_stop stop, kiln_render_stats *stats) {
-    *stats = (kiln_render_stats){.stop = stop, .spp = kiln_film_spp(r->film), .seconds = seconds(r), .lost_energy = -1};
+    r->spp = kiln_film_spp(r->film);
+    *stats = (kiln_render_stats){.stop = stop, .spp = r->spp, .seconds = seconds(r), .lost_energy = -1};
     fixed beyond = 0, kept = 0;
     uint64_t first[KILN_DISCARD_COUNT];
     memset(first, 0xff, sizeof first);
@@ -143,9 +149,11 @@ static void collect(run *r, kiln_stop stop, kiln_render_stats *stats) {
         stats->discarded_pixel[d][0] = (uint32_t)(first[d] % r->film->desc.width);
         stats->discarded_pixel[d][1] = (uint32_t)(first[d] / r->film->desc.width);
     }
-    for (size_t i = 0; i < (size_t)r->film->width * r->film->height; i++)
+    for (size_t i = 0; i < (size_t)r->film->width * r->film->height; i++) {
+        stats->unsampled += r->film->counts[i] == 0;
         for (int s = 0; s < KILN_REPLICATES; s++)
             for (int k = 0; k < 3; k++) kept += r->film->pixels[i].sum[s][k];
+    }
     for (int k = 0; k < 3; k++) beyond += r->film->beyond[k];
     double lost = PROBE_EVERY * fixed_to_double(beyond), all = lost + fixed_to_double(kept);
     if (all > 0) stats->lost_energy = lost / all;
@@ -155,11 +163,12 @@ bool kiln_render(const kiln_renderer *renderer, const kiln_render_options *optio
                  kiln_render_stats *stats, kiln_report *report) {
     const kiln_render_options *o = options ? options : &no_options;
     path_context context;
-    run r = {.options = o, .film = film, .started = clock_seconds(), .error = -1, .scale = o->error_scale > 0 ? o->error_scale : 1};
+    run r = {.options = o, .film = film, .started = clock_seconds(), .error = -1,
+             .scale = o->error_scale > 0 ? o->error_scale : 1};
     if (!context_make(renderer, o, film, &context, report)) return false;
     bool any_rule = o->spp || o->noise > 0 || o->budget_seconds > 0;
     r.spp_limit = o->spp ? o->spp : any_rule ? FIXED_SAMPLES_MAX : 64;
-    r.spp_before = kiln_film_spp(film);
+    r.spp = r.spp_before = kiln_film_spp(film);
     r.samples_before = kiln_film_samples(film);
     r.pass = (pass){.context = &context, .film = film, .threads = renderer->threads, .cancel = o->cancel, .tick = tick,
                     .tick_user = &r, .shuffle = o->tile_shuffle,

@@ -98,7 +98,7 @@ typedef struct kiln_progress {
     uint64_t samples;    /* taken since the call began, in all pixels together, unfinished passes included */
     double fraction;     /* of the work that the stop rules leave, 0 … 1; an estimate for noise */
     double seconds, seconds_left; /* since the call began; left < 0: unknown */
-    double error;        /* square root of the estimated relMSE; < 0: unknown */
+    double error;        /* square root of the relMSE, as estimated at the last power of two of samples; < 0: unknown */
 } kiln_progress;
 
 typedef enum kiln_stop { KILN_STOP_SPP, KILN_STOP_NOISE, KILN_STOP_BUDGET, KILN_STOP_CANCELLED } kiln_stop;
@@ -117,10 +117,11 @@ typedef struct kiln_render_options {
     kiln_sampler sampler;
     kiln_light_sampling light_sampling;
     kiln_pixel_filter filter;
-    double filter_width;         /* diameter, pixels [blackman-harris 3, gaussian 3, box 1] */
+    double filter_width;         /* diameter in pixels, at most 64 [blackman-harris 3, gaussian 3, box 1] */
     kiln_background background;
-    float background_color[3];
-    const volatile int *cancel;  /* not 0: stop soon; what was reached stays in the film [never] */
+    float background_color[3];   /* COLOR: radiance in cd/m² per channel, in the working space of the decoding */
+    const volatile int *cancel;  /* not 0: stop soon; what was reached stays in the film. Set it from a signal handler,
+                                    or from any thread by an atomic store [never] */
     void (*progress)(const kiln_progress *, void *user); /* from the calling thread, about ten times a second */
     void *progress_user;
     uint32_t batch_size;         /* for tests: paths that advance together [1024] */
@@ -130,11 +131,14 @@ typedef struct kiln_render_options {
 
 #define KILN_DEPTH_ZERO UINT32_MAX
 
-/* Samples that were left out, by cause: identifier, machine-readable name. */
+/* Samples that lost something, by cause: identifier, machine-readable name. Each of them counts as a sample of its
+ * pixel all the same, with the light that is left. */
 #define KILN_DISCARDS(X)                                                                                               \
-    X(RAY, "invalid-ray")            /* a ray with a non-finite or zero direction, or a non-finite origin */           \
-    X(RADIANCE, "nonfinite-radiance") /* a sample whose radiance is NaN, infinite or negative */                       \
-    X(OVERFLOW, "film-overflow")     /* a sample too large for the film's fixed point */
+    X(RAY, "invalid-ray") /* a ray that is not finite or has no direction is not traced: what it would have found is   \
+                             missing; from the camera, the sample is black, transparent and without AOVs */            \
+    X(RADIANCE, "nonfinite-radiance") /* a radiance that is NaN, infinite or negative: the sample is black */          \
+    X(OVERFLOW, "film-overflow") /* too large for the film's fixed point: a radiance, and the sample is black, or an   \
+                                    AOV, and the sample's AOVs are 0 */
 
 typedef enum kiln_discard {
 #define KILN_DISCARD_ENUM(id, name) KILN_DISCARD_##id,
@@ -150,6 +154,7 @@ typedef struct kiln_render_stats {
     uint64_t camera_rays, bounce_rays, shadow_rays;
     uint64_t discarded[KILN_DISCARD_COUNT];
     uint32_t discarded_pixel[KILN_DISCARD_COUNT][2]; /* the first in reading order, where discarded > 0 */
+    uint64_t unsampled; /* pixels of the film without a single sample, black: the render ended within its first pass */
     double lost_energy; /* estimated share of the picture's energy that the depth limit cut; < 0: unknown */
 } kiln_render_stats;
 
