@@ -15,7 +15,8 @@ enum { OUTPUT_BYTES_PER_PIXEL = 32 };
 
 bool run_film(job_run *r) {
     const job_options *o = r->options;
-    r->film_desc = (kiln_film_desc){.width = r->view.width, .height = r->view.height, .aovs = o->aovs};
+    r->film_desc = (kiln_film_desc){.width = r->view.width, .height = r->view.height, .aovs = o->aovs,
+                                    .threads = o->threads};
     memcpy(r->film_desc.crop, o->crop, sizeof o->crop);
     if (needs_alpha(r)) r->film_desc.aovs |= 1u << KILN_AOV_ALPHA;
     uint64_t pixels = o->crop[2] ? (uint64_t)(o->crop[2] - o->crop[0]) * (o->crop[3] - o->crop[1])
@@ -111,16 +112,26 @@ static void warn_of_discarded(const job_run *r) {
     static const char *const causes[KILN_DISCARD_COUNT] = {
         [KILN_DISCARD_RAY] = "a ray that was not one",
         [KILN_DISCARD_RADIANCE] = "a radiance that is not a number",
-        [KILN_DISCARD_OVERFLOW] = "a radiance beyond what the film holds",
+        [KILN_DISCARD_OVERFLOW] = "a value beyond what the film holds",
     };
     for (int d = 0; d < KILN_DISCARD_COUNT; d++) {
         kiln_where where = where_root(r->source);
         if (!r->stats.discarded[d]) continue;
         report_warning(r->report, KILN_CODE_INTERNAL, &where, NULL,
-                       "%llu samples were left out for %s, the first in pixel %u,%u",
+                       "%llu samples lost light to %s, the first in pixel %u,%u",
                        (unsigned long long)r->stats.discarded[d], causes[d], r->stats.discarded_pixel[d][0],
                        r->stats.discarded_pixel[d][1]);
     }
+}
+
+static bool is_interrupted(const job_run *r) { return r->stats.stop == KILN_STOP_CANCELLED; }
+
+static void warn_of_holes(const job_run *r) {
+    kiln_where where = where_root("--budget");
+    if (!r->stats.unsampled || is_interrupted(r)) return;
+    report_warning(r->report, KILN_CODE_USAGE, &where, "give it more time, or make a smaller picture",
+                   "the time was up before every pixel had a sample: %llu pixels are black",
+                   (unsigned long long)r->stats.unsampled);
 }
 
 bool run_render(job_run *r) {
@@ -129,9 +140,11 @@ bool run_render(job_run *r) {
     if (!kiln_render(r->renderer, &options, r->film, &r->stats, r->report)) return false;
     r->error = kiln_film_estimate_error(r->film, exp2(r->exposure));
     warn_of_discarded(r);
+    warn_of_holes(r);
     if (r->error.known && r->error.heavy_tail)
         report_note(r->report, KILN_CODE_IGNORED, NULL, NULL,
-                    "few pixels hold most of the error: the estimate of the noise may be too low");
+                    "one pixel in a hundred holds most of the error: rare bright paths are at work, and the estimate "
+                    "of the noise may be too low");
     if (r->stats.lost_energy > 0.001)
         report_note(r->report, KILN_CODE_IGNORED, NULL, "raise --max-depth",
                     "the depth limit cuts an estimated %.1f %% of the light", 100 * r->stats.lost_energy);
@@ -152,7 +165,7 @@ static void background_to_working(const job_run *r, float out[3]) {
 }
 
 bool run_write(job_run *r) {
-    if (!kiln_film_samples(r->film)) return true; /* interrupted before anything could be seen */
+    if (is_interrupted(r) && !kiln_film_samples(r->film)) return true; /* before anything could be seen */
     const job_background *b = &r->options->background;
     job_metadata metadata;
     if (!metadata_make(&metadata, r)) return report_no_memory(r->report, "writing pictures");
@@ -183,14 +196,14 @@ bool run_check_strict(job_run *r) {
                         warnings == 1 ? "" : "s");
 }
 
-bool run_missed_noise(const job_run *r) {
-    bool asked = job_given(r->options, noise_percent) && r->rules.noise > 0;
-    bool reached = r->stats.stop == KILN_STOP_NOISE || (r->error.known && sqrt(r->error.relmse) <= r->rules.noise);
-    return r->rendered && asked && !reached;
-}
 int run_exit_code(const job_run *r) {
     enum { NOISE_MISSED = 4 };
     int code = kiln_report_exit_code(r->report);
     return code ? code : run_missed_noise(r) ? NOISE_MISSED : 0;
 }
 
+bool run_missed_noise(const job_run *r) {
+    bool asked = job_given(r->options, noise_percent) && r->rules.noise > 0;
+    bool reached = r->stats.stop == KILN_STOP_NOISE || (r->error.known && sqrt(r->error.relmse) <= r->rules.noise);
+    return r->rendered && asked && !reached;
+}

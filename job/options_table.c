@@ -34,8 +34,8 @@ static const option_row rows[] = {
     {"spp", 0, "N", quality, "samples per pixel; the same bits for any number of threads", NULL, "1024 with --noise 3%",
      "a whole number from 1 to 16777216", &option_count, .low = 1, .high = 16777216, FIELD(spp)},
     {"noise", 0, "P%", quality,
-     "ends when the root of the estimated relative mean square error is below P; 0: off. Giving any of these rules "
-     "replaces the default; the first that is reached ends the render",
+     "ends when the root of the estimated relative mean square error, of the pixels that show a surface, is below P; "
+     "0: off. Giving any of these rules replaces the default; the first that is reached ends the render",
      NULL, "3% with --spp 1024", "a percentage from 0 to 100, such as 1.5%", &option_percent, FIELD(noise_percent)},
     {"budget", 0, "DURATION", quality, "ends after this time of rendering: 90, 90s, 500ms, 1.5m, 1h30m", NULL, NULL,
      "a time above 0 such as 90s or 1h30m", &option_duration, FIELD(budget_seconds)},

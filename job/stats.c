@@ -153,6 +153,7 @@ static json_t *render_facts(const job_run *r) {
     put_number(o, "seconds", s->seconds);
     put_count(o, "samples_per_pixel", s->spp);
     put_count(o, "samples", samples);
+    put_count(o, "pixels_without_samples", s->unsampled);
     put_number(o, "samples_per_second", s->seconds > 0 ? (double)samples / s->seconds : NAN);
     put_count(rays, "camera", s->camera_rays);
     put_count(rays, "bounce", s->bounce_rays);
@@ -236,6 +237,6 @@ json_t *stats_make(const job_run *r) {
     put(o, "notes", stats_messages(r->report, KILN_NOTE));
     put(o, "warnings", stats_messages(r->report, KILN_WARNING));
     put(o, "errors", stats_messages(r->report, KILN_ERROR));
-    return o;
     put_count(o, "exit_code", (uint64_t)run_exit_code(r));
+    return o;
 }

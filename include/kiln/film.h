@@ -36,13 +36,14 @@ typedef struct kiln_film_desc {
     uint32_t width, height;     /* of the whole picture, 1 … 65,536 */
     uint32_t crop[4];           /* x0, y0, x1, y1, right and bottom exclusive; all zero: the whole picture */
     uint32_t aovs;              /* bits 1 << kiln_aov */
+    uint32_t threads;           /* that may estimate the error; 0: every core that the process may use */
 } kiln_film_desc;
 
 /* Memory that such a film takes. */
 KILN_API uint64_t kiln_film_size(const kiln_film_desc *);
 
-KILN_API bool kiln_film_create(const kiln_film_desc *, kiln_film **film, kiln_report *);
 /* An empty film. On failure *film is NULL: sizes or crop out of range, an AOV that does not exist, no memory. */
+KILN_API bool kiln_film_create(const kiln_film_desc *, kiln_film **film, kiln_report *);
 KILN_API void kiln_film_destroy(kiln_film *); /* NULL: nothing happens */
 KILN_API kiln_film_desc kiln_film_describe(const kiln_film *); /* crop always filled in */
 
@@ -51,13 +52,14 @@ KILN_API kiln_film_desc kiln_film_describe(const kiln_film *); /* crop always fi
 KILN_API void kiln_film_beauty(const kiln_film *, float *rgb);
 KILN_API bool kiln_film_aov(const kiln_film *, kiln_aov, float *values); /* false: the film does not hold it */
 
-/* What the film knows of its own accuracy. Estimates come from the spread of the replicates. */
+/* What the film knows of its own accuracy (docs/estimator.md). Pixels count where the camera sees a surface, so that an
+ * empty background does not make a picture look better; all of them when it sees none. */
 typedef struct kiln_film_error {
-    bool known;            /* false before every replicate has a sample */
-    double relmse;         /* mean over pixels and channels of variance / (mean² + 0.01) */
-    double relmse_trimmed; /* without the worst 0.1 % of the pixels */
-    double relmse_low, relmse_high; /* 95 % interval of relmse */
-    bool heavy_tail;       /* few pixels hold most of the error: an unseen tail is likely */
+    bool known;            /* false before every replicate of every pixel has a sample, or when memory is exhausted */
+    double relmse;         /* mean over pixels and channels of variance / (ref² + 0.01) */
+    double relmse_trimmed; /* without the share of the worst 1 % of the pixels */
+    double relmse_low, relmse_high; /* 95 % interval of the true relMSE at this number of samples */
+    bool heavy_tail;       /* the worst 1 % hold most of the error: more of it is likely to be unseen as yet */
 } kiln_film_error;
 /* scale multiplies the picture first (2^exposure): the 0.01 is a matter of what is seen. */
 KILN_API kiln_film_error kiln_film_estimate_error(const kiln_film *, double scale);

@@ -19,9 +19,8 @@ static bool allocate(kiln_film *f) {
     size_t pixels = (size_t)f->width * f->height;
     f->pixels = aligned_array(pixels, sizeof *f->pixels);
     f->counts = aligned_array(pixels, sizeof *f->counts);
-    bool done = f->pixels && f->counts;
-    if (f->desc.aovs & (1u << KILN_AOV_ALPHA | 1u << KILN_AOV_DEPTH))
-        done = done && (f->hits = aligned_array(pixels, sizeof *f->hits));
+    f->hits = aligned_array(pixels, sizeof *f->hits);
+    bool done = f->pixels && f->counts && f->hits;
     for (int a = 0; a < KILN_AOV_COUNT; a++)
         if (f->desc.aovs & 1u << a && is_summed(a))
             done = done && (f->aovs[a] = aligned_array(pixels * aov_rows[a].channels, sizeof(fixed)));
@@ -43,8 +42,7 @@ static bool check(const kiln_film_desc *d, kiln_report *report) {
 }
 
 static uint64_t bytes_per_pixel(uint32_t aovs) {
-    uint64_t each = sizeof(film_pixel) + sizeof(uint32_t);
-    if (aovs & (1u << KILN_AOV_ALPHA | 1u << KILN_AOV_DEPTH)) each += sizeof(uint32_t);
+    uint64_t each = sizeof(film_pixel) + 2 * sizeof(uint32_t);
     for (int a = 0; a < KILN_AOV_COUNT; a++)
         if (aovs & 1u << a && is_summed(a)) each += aov_rows[a].channels * sizeof(fixed);
     return each;
@@ -93,8 +91,8 @@ void film_add(kiln_film *f, uint32_t x, uint32_t y, const film_sample *s) {
     size_t pixel = (size_t)y * f->width + x;
     uint32_t replicate = f->counts[pixel]++ & (KILN_REPLICATES - 1);
     for (int k = 0; k < 3; k++) f->pixels[pixel].sum[replicate][k] += fixed_from_float(s->radiance[k]);
-    if (f->hits) f->hits[pixel] += s->alpha > 0.0f;
     if (!(s->alpha > 0.0f)) return;
+    f->hits[pixel]++;
     add_to(f->aovs[KILN_AOV_ALBEDO], pixel, s->albedo, 3);
     add_to(f->aovs[KILN_AOV_NORMAL], pixel, s->normal, 3);
     add_to(f->aovs[KILN_AOV_DEPTH], pixel, &s->depth, 1);

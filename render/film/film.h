@@ -13,10 +13,9 @@ struct kiln_film {
     uint32_t width, height;   /* of the crop */
     film_pixel *pixels;       /* row by row, as everything below */
     uint32_t *counts;         /* samples so far: sample n of a pixel belongs to replicate n mod KILN_REPLICATES */
-    uint32_t *hits;           /* those whose camera ray met a surface; NULL: neither ALPHA nor DEPTH is held */
+    uint32_t *hits;           /* those whose camera ray met a surface */
     fixed *aovs[KILN_AOV_COUNT]; /* sums, channels interleaved; NULL: not held, or not a sum */
     fixed beyond[3];          /* radiance that probes found beyond the depth limit, all pixels */
-    uint64_t beyond_samples;  /* samples that could have been probes */
 };
 
 /* What one sample brings. */
