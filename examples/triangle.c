@@ -31,15 +31,16 @@ static bool build(kiln_scene *scene, kiln_report *report) {
 }
 
 int main(int argc, char **argv) {
+    if (argc != 2) return fprintf(stderr, "usage: %s out.png\n", argv[0]), 2;
     kiln_report *report = kiln_report_create();
     kiln_scene *scene = kiln_scene_create();
     kiln_job *job = kiln_job_create();
-    bool done = argc == 2 && report && scene && job && build(scene, report) &&
+    bool done = report && scene && job && build(scene, report) &&
                 kiln_job_set(job, "output", argv[1], report) && kiln_job_set(job, "size", "320x240", report) &&
                 kiln_job_set(job, "spp", "32", report) && kiln_job_render_scene(job, scene, "triangle", report);
     for (size_t i = 0; report && i < kiln_report_size(report); i++) {
         kiln_message m = kiln_report_message(report, i);
-        fprintf(stderr, "%s: %s\n", m.where, m.what);
+        fprintf(stderr, "%s: %s; %s\n", m.where, m.what, m.remedy);
     }
     kiln_job_destroy(job);
     kiln_scene_destroy(scene);

@@ -10,7 +10,7 @@
 #define KILN_SOURCE_DIR ""
 #endif
 
-/* $KILN_ASSETS, or shared/assets beside the checkout; NULL when neither is a folder. */
+/* $KILN_ASSETS, else ../shared/assets beside the checkout; NULL when that is no folder. */
 static inline const char *assets_root(void) {
     static char beside[4096];
     struct stat status;
