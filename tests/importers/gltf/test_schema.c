@@ -56,8 +56,10 @@ static void refuses_wrong_types(void **state) {
 
 static void lets_the_rest_pass(void **state) {
     (void)state;
-    kiln_scene *scene = import_good(TRIANGLE_DATA, TRIANGLE ", 'nodes': [{'mesh': 0, 'extras': {'mesh': 'x', 'children': 1}, "
-                                    "'unknown': {'mesh': 'x'}, 'extensions': {'X_y': {'mesh': 'x'}}}], 'extras': [null]");
+    kiln_scene *scene = import_warned(TRIANGLE_DATA,
+                                      TRIANGLE ", 'nodes': [{'mesh': 0, 'extras': {'mesh': 'x', 'children': 1}, "
+                                      "'unknown': {'mesh': 'x'}, 'extensions': {'X_y': {'mesh': 'x'}}}], 'extras': [null]",
+                                      KILN_CODE_IGNORED, "nodes[0].extensions.X_y", "X_y is not known");
     assert_int_equal(scene->instance_count, 1);
     kiln_scene_destroy(scene);
 }
