@@ -4,15 +4,6 @@
 
 #include "base/hash.h"
 
-/* The first bounces must not be cut: most of the light is in them. */
-enum { AUTO_ROULETTE_MIN = 3 };
-
-static void set_roulette(path_context *c, const kiln_roulette *r) {
-    c->roulette = r->kind == KILN_ROULETTE_AUTO ? KILN_ROULETTE_THROUGHPUT : r->kind;
-    c->roulette_min = r->kind == KILN_ROULETTE_AUTO ? AUTO_ROULETTE_MIN : r->min_depth;
-    c->roulette_p = (float)r->p;
-}
-
 /* What a program cannot have meant; NaN is refused with the rest. */
 static const char *what_is_unknown(const kiln_render_options *o) {
     return (unsigned)o->estimator > KILN_ESTIMATOR_BSDF            ? "estimator"
@@ -68,13 +59,15 @@ bool context_make(const kiln_renderer *r, const kiln_render_options *o, const ki
                         .seed = hash_u64(o->seed),
                         .independent = o->sampler == KILN_SAMPLER_INDEPENDENT,
                         .estimator = o->estimator,
+                        .roulette = o->roulette.kind,
+                        .roulette_p = (float)o->roulette.p,
+                        .roulette_min = o->roulette.min_depth,
                         .light_cdf = lights->cdf[choice],
                         .light_guide = lights->guide[choice],
                         .max_depth = o->max_depth == KILN_DEPTH_ZERO ? 0 : o->max_depth ? o->max_depth : 64,
                         .background = o->background,
                         .background_color = v3_load(o->background_color),
                         .aovs = d->aovs & (1u << KILN_AOV_ALBEDO | 1u << KILN_AOV_NORMAL | 1u << KILN_AOV_DEPTH)};
-    set_roulette(c, &o->roulette);
     pixel_filter_make(&c->filter, o->filter, o->filter_width);
     return camera_make(r->world, view, d->width, d->height, &c->camera, report);
 }

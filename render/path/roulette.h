@@ -1,9 +1,11 @@
 /* render/path/roulette.h: which paths go on. Scalar kernels.
  *
  * Surviving with probability p and dividing by p keeps the expectation. FIXED takes the same p at every bounce.
- * THROUGHPUT takes the largest channel of the throughput, which is the product over the bounces so far of
- * f cos/(pdf p_i); bounces under the minimum depth are guaranteed, p_i = 1. Radiance that refraction has squeezed into
- * a denser medium (÷ η²) will be released again and counts in full. */
+ * THROUGHPUT takes the largest channel T of the throughput, which is the product over the bounces so far of
+ * f cos/(pdf p_i); bounces under the minimum depth are guaranteed, p_i = 1. That brings every
+ * survivor back to T = 1; AUTO, 1.5 √T after one guaranteed bounce, leaves part of the loss in the weight and spares
+ * bright surfaces, which is more efficient (measured: docs/estimator.md). Radiance that refraction has squeezed into a
+ * denser medium (÷ η²) will be released again and counts in full. */
 #ifndef KILN_RENDER_PATH_ROULETTE_H
 #define KILN_RENDER_PATH_ROULETTE_H
 
@@ -13,18 +15,24 @@
 /* 0.99: two mirrors facing each other absorb nothing; a path between them must end all the same. */
 #define ROULETTE_MOST 0.99f
 
-/* A policy at one depth: survival = constant + slope · largest channel. */
-typedef struct roulette { float constant, slope; } roulette;
+/* AUTO: the factor of the root, and the guaranteed bounces. */
+#define ROULETTE_ROOT 1.5f
+enum { ROULETTE_AUTO_MIN = 1 };
+
+/* A policy at one depth: survival = constant + slope T + root √T. */
+typedef struct roulette { float constant, slope, root; } roulette;
 
 static inline roulette roulette_make(const path_context *c, uint32_t depth) {
     bool beyond = depth >= c->max_depth; /* probes must end soon, whatever the policy */
-    if (beyond || (c->roulette == KILN_ROULETTE_THROUGHPUT && depth >= c->roulette_min)) return (roulette){0.0f, 1.0f};
-    return (roulette){c->roulette == KILN_ROULETTE_FIXED ? c->roulette_p : 1.0f, 0.0f};
+    if (beyond || (c->roulette == KILN_ROULETTE_THROUGHPUT && depth >= c->roulette_min))
+        return (roulette){.slope = 1.0f};
+    if (c->roulette == KILN_ROULETTE_AUTO && depth >= ROULETTE_AUTO_MIN) return (roulette){.root = ROULETTE_ROOT};
+    return (roulette){.constant = c->roulette == KILN_ROULETTE_FIXED ? c->roulette_p : 1.0f};
 }
 
 KERNEL float roulette_survival(const roulette *r, vec3 throughput, float squeeze) {
-    float largest = fm_clamp(v3_max(throughput) * squeeze, 0.0f, ROULETTE_MOST);
-    float survival = r->constant + r->slope * largest;
+    float largest = fm_max(v3_max(throughput) * squeeze, 0.0f);
+    float survival = r->constant + fm_min(r->slope * largest + r->root * sqrtf(largest), ROULETTE_MOST);
     return survival > 0.0f ? survival : 1.0f; /* a dead path needs no roulette */
 }
 
