@@ -28,11 +28,12 @@ KERNEL uint64_t medium_cross(uint64_t media, uint32_t medium, int entering) {
     return medium ? (entering ? in : out) : media;
 }
 
-/* What is left of light after a distance: exp(−σ distance). Over an infinite distance nothing is taken: a ray that
- * leaves the scene from inside of a medium has met an open mesh. */
-KERNEL vec3 medium_transmittance(const float *absorption, float distance) {
+/* What is left of light after a distance: exp(−σ distance), σ the three of a medium in the table. Over an infinite
+ * distance nothing is taken: a ray that leaves the scene from inside of a medium has met an open mesh. */
+KERNEL vec3 medium_transmittance(const float *absorption, uint32_t medium, float distance) {
     float d = distance < INFINITY ? -distance : 0.0f;
-    return v3(fm_exp(absorption[0] * d), fm_exp(absorption[1] * d), fm_exp(absorption[2] * d));
+    int32_t k = 3 * (int32_t)medium; /* signed, and no pointer of its own: gathers want it so */
+    return v3(fm_exp(absorption[k] * d), fm_exp(absorption[k + 1] * d), fm_exp(absorption[k + 2] * d));
 }
 
 #endif

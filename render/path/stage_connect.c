@@ -32,7 +32,7 @@ static void attenuate(const path_context *c, batch *b) {
         bool solid = i >= b->kinds[KIND_TRANSMISSIVE].first && x->medium[i];
         uint64_t media = s->media[i];
         if (solid && v3_dot(wi, n) < 0.0f) media = medium_cross(media, x->medium[i], x->front[i] > 0.5f);
-        vec3 left = medium_transmittance(c->world->media + 3 * (media & 0xffffu), x->distance[i]);
+        vec3 left = medium_transmittance(c->world->media, media & 0xffffu, x->distance[i]);
         x->cr[i] *= left.x, x->cg[i] *= left.y, x->cb[i] *= left.z;
     }
 }

@@ -194,7 +194,7 @@ static void connect(const path_context *c, path *p, const hit *h, const shading 
         uint64_t media = p->media;
         uint32_t medium = h->material->kind == KIND_TRANSMISSIVE ? h->material->medium : 0;
         if (medium && v3_dot(r.wi, s->geometric) < 0.0f) media = medium_cross(media, medium, h->p.front > 0.5f);
-        n.contribution = v3_mul(n.contribution, medium_transmittance(w->media + 3 * (media & 0xffffu), r.distance));
+        n.contribution = v3_mul(n.contribution, medium_transmittance(w->media, media & 0xffffu, r.distance));
     }
     if (!(v3_max(n.contribution) > 0.0f)) return;
     uint32_t visible = RAY_STOPPED;
@@ -231,7 +231,7 @@ oracle_result oracle_trace(const path_context *c, path_sample sample) {
             break;
         }
         if (c->world->absorbs)
-            p.throughput = v3_mul(p.throughput, medium_transmittance(c->world->media + 3 * (p.media & 0xffffu), h.p.hit.t));
+            p.throughput = v3_mul(p.throughput, medium_transmittance(c->world->media, p.media & 0xffffu, h.p.hit.t));
         vec3 wo = v3_neg(p.direction), normal = h.p.shading, emission;
         surface s = look_up(c, &h, &emission, &normal);
         normal = surface_face(normal, wo);

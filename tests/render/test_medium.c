@@ -80,16 +80,16 @@ static void absent_media_change_nothing(void **state) {
 
 static void transmittance_is_exponential(void **state) {
     (void)state;
-    const float sigma[3] = {0, 0.5f, 3};
+    const float sigma[6] = {9, 9, 9, 0, 0.5f, 3};
     for (float d = 0; d < 20; d += 0.25f) {
-        vec3 t = medium_transmittance(sigma, d);
+        vec3 t = medium_transmittance(sigma, 1, d);
         assert_true(t.x == 1);
         assert_true(fabs((double)t.y - exp(-0.5 * (double)d)) < 1e-6 && fabs((double)t.z - exp(-3 * (double)d)) < 1e-6);
     }
     /* A ray that leaves the scene from inside has met an open mesh: it loses nothing, and makes no NaN of 0 · ∞. */
-    vec3 t = medium_transmittance(sigma, INFINITY);
+    vec3 t = medium_transmittance(sigma, 1, INFINITY);
     assert_true(t.x == 1 && t.y == 1 && t.z == 1);
-    assert_true(medium_transmittance((const float[]){1e30f, 0, 0}, 1e30f).x == 0);
+    assert_true(medium_transmittance((const float[]){1e30f, 0, 0}, 0, 1e30f).x == 0);
 }
 
 int main(void) {
