@@ -262,7 +262,8 @@ KERNEL bsdf_value bsdf_evaluate(unsigned mask, const bsdf *b, vec3 wi, const flo
 
 typedef struct bsdf_sampled {
     vec3 wi;
-    vec3 multiplier; /* f |cos θi| / pdf, with cosine and density cancelled; 0: absorbed */
+    vec3 multiplier; /* f |cos θi| / pdf over all lobes; 0: absorbed. In closed form for Lambert alone (the albedo) and
+                        for deltas; a mixture divides two sums, in which each lobe's D and cosine occur alike */
     float pdf;       /* of wi over all lobes; 0 for a delta */
     int delta;
 } bsdf_sampled;

@@ -47,11 +47,6 @@ KERNEL float ggx_reflection_value(vec3 wo, vec3 wi, vec3 h, float alpha) {
     float visibility = 0.5f / (wi.z * ggx_length(wo, alpha) + wo.z * ggx_length(wi, alpha));
     return ggx_d(h, alpha) * visibility * wi.z;
 }
-/* value/pdf, the multiplier with cosine, D and Jacobian cancelled: G2/G1. */
-KERNEL float ggx_reflection_multiplier(vec3 wo, vec3 wi, float alpha) {
-    float lo = ggx_length(wo, alpha), li = ggx_length(wi, alpha);
-    return wi.z * (wo.z + lo) / (wi.z * lo + wo.z * li);
-}
 
 /* The half vector of a refraction, on wo's side: −(wo + η wi) for η = n_far/n_near > 1, turned over for η < 1
  * (Walter eq. 16). Zero when there is none. */
