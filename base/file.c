@@ -141,6 +141,7 @@ struct kiln_writer {
  * is the process's too. Who takes a name out of its slot owns it; what a handler took is not given back. */
 enum { TEMPORARIES_MAX = 64, NO_SLOT = -1 };
 static _Atomic(char *) temporaries[TEMPORARIES_MAX];
+static char *volatile taken[TEMPORARIES_MAX]; /* by a handler: still in sight of those who look for leaks */
 _Static_assert(ATOMIC_POINTER_LOCK_FREE == 2, "a signal handler reads the table");
 
 /* NO_SLOT: all are taken, and this one is left behind when the process is ended. */
@@ -161,7 +162,9 @@ static void free_temporary(kiln_writer *writer) {
 void file_remove_temporaries(void) {
     for (int slot = 0; slot < TEMPORARIES_MAX; slot++) {
         char *name = atomic_exchange(&temporaries[slot], NULL);
-        if (name) (void)unlink(name);
+        if (!name) continue;
+        (void)unlink(name);
+        taken[slot] = name;
     }
 }
 
