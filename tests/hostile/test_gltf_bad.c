@@ -1,23 +1,10 @@
 /* Files that a user may really have: each gives one clear line and the exit class for invalid input. */
-#include "tests/importers/gltf/support.h"
+#include "tests/importers/gltf/folder.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "kiln/import.h"
-
-static char folder[] = "/tmp/kiln-bad-XXXXXX";
-
-static void name_of(char path[160], const char *name) { snprintf(path, 160, "%s/%s", folder, name); }
-
-static void put(const char *name, const void *data, size_t size) {
-    char path[160];
-    name_of(path, name);
-    FILE *f = fopen(path, "wb");
-    assert_non_null(f);
-    fwrite(data, 1, size, f);
-    fclose(f);
-}
 
 static int set_up(void **state) {
     (void)state;

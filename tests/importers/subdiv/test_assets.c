@@ -1,5 +1,5 @@
 /* Real glTF files: nothing cracks, UVs stay, and `auto` rounds off what is round. */
-#include "tests/importers/subdiv/shapes.h"
+#include "tests/importers/subdiv/support.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,26 +9,6 @@
 #include "importers/subdiv/edges.h"
 #include "importers/subdiv/osd.h"
 #include "tests/assets.h"
-
-typedef struct fixture {
-    kiln_scene *scene;
-    kiln_report *report;
-    kiln_arena arena;
-} fixture;
-
-static int setup(void **state) {
-    static fixture f;
-    f = (fixture){kiln_scene_create(), kiln_report_create(), {0}};
-    *state = &f;
-    return !f.scene || !f.report;
-}
-static int teardown(void **state) {
-    fixture *f = *state;
-    kiln_scene_destroy(f->scene);
-    kiln_report_destroy(f->report);
-    arena_free(&f->arena);
-    return 0;
-}
 
 static void import(fixture *f, const char *root, const char *file) {
     char path[8192];

@@ -1,5 +1,5 @@
 /* Face-varying values: where they hang together, and what refinement makes of them. */
-#include "tests/importers/subdiv/shapes.h"
+#include "tests/importers/subdiv/support.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,26 +7,6 @@
 
 #include "importers/subdiv/osd.h"
 #include "kiln/import.h"
-
-typedef struct fixture {
-    kiln_scene *scene;
-    kiln_report *report;
-    kiln_arena arena;
-} fixture;
-
-static int setup(void **state) {
-    static fixture f;
-    f = (fixture){kiln_scene_create(), kiln_report_create(), {0}};
-    *state = &f;
-    return !f.scene || !f.report;
-}
-static int teardown(void **state) {
-    fixture *f = *state;
-    kiln_scene_destroy(f->scene);
-    kiln_report_destroy(f->report);
-    arena_free(&f->arena);
-    return 0;
-}
 
 static kiln_cage build(fixture *f, const shape *s) {
     kiln_cage cage;

@@ -1,29 +1,11 @@
 /* What `auto` does with meshes that say nothing about subdivision. */
-#include "tests/importers/subdiv/shapes.h"
+#include "tests/importers/subdiv/support.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "kiln/import.h"
-
-typedef struct fixture {
-    kiln_scene *scene;
-    kiln_report *report;
-} fixture;
-
-static int setup(void **state) {
-    static fixture f;
-    f = (fixture){kiln_scene_create(), kiln_report_create()};
-    *state = &f;
-    return !f.scene || !f.report;
-}
-static int teardown(void **state) {
-    fixture *f = *state;
-    kiln_scene_destroy(f->scene);
-    kiln_report_destroy(f->report);
-    return 0;
-}
 
 /* The row that `auto` gives for an exported shape; the mesh is number f->scene->mesh_count then. */
 static kiln_subdivision_result look(fixture *f, const shape *s) {

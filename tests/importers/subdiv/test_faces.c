@@ -1,29 +1,9 @@
-#include "tests/importers/subdiv/shapes.h"
+#include "tests/importers/subdiv/support.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "importers/subdiv/faces.h"
-
-typedef struct fixture {
-    kiln_scene *scene;
-    kiln_report *report;
-    kiln_arena arena;
-} fixture;
-
-static int setup(void **state) {
-    static fixture f;
-    f = (fixture){kiln_scene_create(), kiln_report_create(), {0}};
-    *state = &f;
-    return !f.scene || !f.report;
-}
-static int teardown(void **state) {
-    fixture *f = *state;
-    kiln_scene_destroy(f->scene);
-    kiln_report_destroy(f->report);
-    arena_free(&f->arena);
-    return 0;
-}
 
 static const kiln_mesh *add(fixture *f, const kiln_mesh_desc *desc) {
     kiln_id id;

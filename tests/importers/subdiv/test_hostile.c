@@ -1,29 +1,11 @@
 /* Inputs that crash OpenSubdiv, or make it read out of bounds, when it is asked directly. */
-#include "tests/importers/subdiv/shapes.h"
+#include "tests/importers/subdiv/support.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "kiln/import.h"
-
-typedef struct fixture {
-    kiln_scene *scene;
-    kiln_report *report;
-} fixture;
-
-static int setup(void **state) {
-    static fixture f;
-    f = (fixture){kiln_scene_create(), kiln_report_create()};
-    *state = &f;
-    return !f.scene || !f.report;
-}
-static int teardown(void **state) {
-    fixture *f = *state;
-    kiln_scene_destroy(f->scene);
-    kiln_report_destroy(f->report);
-    return 0;
-}
 
 static void assert_finite(const kiln_mesh *m) {
     for (uint32_t i = 0; i < 3 * m->vertex_count * m->time_count; i++) assert_true(isfinite(m->positions[i]));

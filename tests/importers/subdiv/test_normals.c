@@ -1,5 +1,6 @@
 /* Limit normals: against the sphere, on both sides of creases, against the facets of deep refinements. */
 #include "tests/importers/subdiv/obj.h"
+#include "tests/importers/subdiv/support.h"
 
 #include <dirent.h>
 #include <math.h>
@@ -9,26 +10,6 @@
 
 #include "importers/subdiv/osd.h"
 #include "tests/assets.h"
-
-typedef struct fixture {
-    kiln_scene *scene;
-    kiln_report *report;
-    kiln_arena arena;
-} fixture;
-
-static int setup(void **state) {
-    static fixture f;
-    f = (fixture){kiln_scene_create(), kiln_report_create(), {0}};
-    *state = &f;
-    return !f.scene || !f.report;
-}
-static int teardown(void **state) {
-    fixture *f = *state;
-    kiln_scene_destroy(f->scene);
-    kiln_report_destroy(f->report);
-    arena_free(&f->arena);
-    return 0;
-}
 
 static osd_surface refine(fixture *f, const shape *s, uint32_t level) {
     kiln_cage cage;
