@@ -72,8 +72,8 @@ static void wrong_options_are_refused(void **state) {
 
 /* What listeners were told. */
 typedef struct told {
-    uint32_t calls, spp_done, stop_after;
-    uint64_t samples;
+    uint32_t calls, spp_done;
+    uint64_t samples, stop_after; /* so many samples; 0: never */
     double fraction;
     int cancel;
 } told;
@@ -83,7 +83,7 @@ static void listen(const kiln_progress *p, void *user) {
     assert_true(p->spp_done >= t->spp_done && p->samples >= t->samples && p->fraction >= 0 && p->fraction <= 1);
     t->calls++;
     t->spp_done = p->spp_done, t->samples = p->samples, t->fraction = p->fraction;
-    if (t->stop_after && t->calls >= t->stop_after) __atomic_store_n(&t->cancel, 1, __ATOMIC_RELAXED);
+    if (t->stop_after && t->samples >= t->stop_after) __atomic_store_n(&t->cancel, 1, __ATOMIC_RELAXED);
 }
 
 /* Reports come while other threads trace: built with the thread sanitizer, this finds what they share. */
