@@ -23,6 +23,7 @@ typedef struct part { layer weight, mean[3], variance[3]; } part;
 /* A walk over the parts. */
 typedef struct walk {
     const kiln_film *film;
+    bool map;        /* values become the map that is shown, else what the estimate pools */
     bool everywhere; /* pixels without a surface count too */
     double scale;
     float *values;   /* one for each pixel */
@@ -69,8 +70,23 @@ static double relative_error(double mean, double variance, double around, double
     return variance * scale * scale / (ref * ref * scale * scale + 0.01);
 }
 
-/* Each pixel's relative error, mean over its channels; −1 where it does not count. */
-static void estimate_part(void *context, size_t item, uint32_t thread) {
+/* A pixel's relative error, mean over its channels; −1 where it does not count. around: sums over 5 × 5 means. */
+static float pixel_error(const part *p, const layer count, const layer around[3], uint32_t j, uint32_t i, double scale) {
+    double sum = 0;
+    if (!(p->weight[j][i] > 0)) return -1;
+    for (int k = 0; k < 3; k++)
+        sum += relative_error(p->mean[k][j][i], p->variance[k][j][i], around[k][j][i] - p->mean[k][j][i],
+                              count[j][i] - 1, scale);
+    return (float)(sum / 3);
+}
+
+/* Standard error of the mean. One degree of freedom per pixel says little; 5 × 5 pixels share theirs. */
+static float pooled_error(const layer count, const layer variances[3], uint32_t j, uint32_t i) {
+    double all = variances[0][j][i] + variances[1][j][i] + variances[2][j][i], n = 3 * count[j][i];
+    return n > 0 ? (float)sqrt(all / n) : 0.0f;
+}
+
+static void walk_part(void *context, size_t item, uint32_t thread) {
     (void)thread;
     const walk *w = context;
     const kiln_film *f = w->film;
@@ -79,21 +95,16 @@ static void estimate_part(void *context, size_t item, uint32_t thread) {
     layer count, sum[3];
     load(w, x0, y0, &p);
     box_sum(p.weight, count);
-    for (int k = 0; k < 3; k++) box_sum(p.mean[k], sum[k]);
+    for (int k = 0; k < 3; k++) box_sum(w->map ? p.variance[k] : p.mean[k], sum[k]);
     for (uint32_t j = REACH; j < SPAN - REACH && y0 + j < f->height + REACH; j++)
         for (uint32_t i = REACH; i < SPAN - REACH && x0 + i < f->width + REACH; i++) {
-            double r = 0;
-            for (int k = 0; k < 3; k++)
-                r += relative_error(p.mean[k][j][i], p.variance[k][j][i], sum[k][j][i] - p.mean[k][j][i],
-                                    count[j][i] - 1, w->scale);
             float *value = &w->values[(size_t)(y0 + j - REACH) * f->width + (x0 + i - REACH)];
-            *value = p.weight[j][i] > 0 ? (float)(r / 3) : -1;
+            *value = w->map ? pooled_error(count, sum, j, i) : pixel_error(&p, count, sum, j, i, w->scale);
         }
 }
 
-static void walk_parts(const walk *w, void (*work)(void *, size_t, uint32_t)) {
-    walk own = *w;
-    threads_for(w->film->desc.threads, (size_t)parts_across(w->film) * parts_down(w->film), work, &own);
+static void walk_parts(walk w) {
+    threads_for(w.film->desc.threads, (size_t)parts_across(w.film) * parts_down(w.film), walk_part, &w);
 }
 
 /* Floats that are not negative are in the order of their bits. Those of a bucket share the upper half of them, and are
@@ -153,32 +164,15 @@ kiln_film_error kiln_film_estimate_error(const kiln_film *f, double scale) {
     kiln_film_error e = {0};
     size_t pixels = (size_t)f->width * f->height;
     if (kiln_film_spp(f) < KILN_REPLICATES) return e;
-    walk w = {f, true, scale, array_alloc(pixels, sizeof(float))};
+    walk w = {.film = f, .everywhere = true, .scale = scale, .values = array_alloc(pixels, sizeof(float))};
     if (!w.values) return e;
     for (size_t i = 0; w.everywhere && i < pixels; i++) w.everywhere = !f->hits[i];
-    walk_parts(&w, estimate_part);
+    walk_parts(w);
     if (!summarise(w.values, pixels, &e)) e = (kiln_film_error){0};
     free(w.values);
     return e;
 }
 
-static void map_part(void *context, size_t item, uint32_t thread) {
-    (void)thread;
-    const walk *w = context;
-    const kiln_film *f = w->film;
-    uint32_t x0 = (uint32_t)(item % parts_across(f)) * PART, y0 = (uint32_t)(item / parts_across(f)) * PART;
-    part p;
-    layer count, sum[3];
-    load(w, x0, y0, &p);
-    box_sum(p.weight, count);
-    for (int k = 0; k < 3; k++) box_sum(p.variance[k], sum[k]);
-    for (uint32_t j = REACH; j < SPAN - REACH && y0 + j < f->height + REACH; j++)
-        for (uint32_t i = REACH; i < SPAN - REACH && x0 + i < f->width + REACH; i++) {
-            double all = sum[0][j][i] + sum[1][j][i] + sum[2][j][i], n = 3 * count[j][i];
-            float *value = &w->values[(size_t)(y0 + j - REACH) * f->width + (x0 + i - REACH)];
-            *value = n > 0 ? (float)sqrt(all / n) : 0.0f;
-        }
+void film_error_map(const kiln_film *f, float *values) {
+    walk_parts((walk){.film = f, .map = true, .everywhere = true, .values = values});
 }
-
-/* One degree of freedom per pixel says little; a neighbourhood of 5 × 5 shares its own. */
-void film_error_map(const kiln_film *f, float *values) { walk_parts(&(walk){f, true, 1, values}, map_part); }
