@@ -17,6 +17,10 @@ kiln_material kiln_material_default(void) {
         .specular.value = 1,
         .specular_color.value = {1, 1, 1},
         .attenuation_color = {1, 1, 1},
+        .clearcoat_normal.value = 1,
+        .iridescence_ior = 1.3f,
+        .iridescence_thickness = {100, 400},
+        .diffuse_transmission_color.value = {1, 1, 1},
     };
 }
 
@@ -110,7 +114,7 @@ static void check_constants(kiln_material *m, const kiln_where *where, kiln_repo
 }
 
 bool kiln_scene_add_material(kiln_scene *scene, const kiln_material *desc, kiln_id *id, kiln_report *report) {
-    enum { LAYERS = KILN_LAYER_TRANSMISSION | KILN_LAYER_VOLUME | KILN_LAYER_UNLIT };
+    enum { LAYERS = 2 * KILN_LAYER_GLOSSINESS - 1 };
     scene_place place;
     place_set(&place, scene, "material", desc->name, (size_t)scene->material_count + 1);
     if (!check_open(scene, &place.where, report) ||

@@ -46,6 +46,14 @@ typedef enum kiln_layer {
     KILN_LAYER_VOLUME = 1 << 1,       /* KHR_materials_volume: the surface bounds a solid */
     KILN_LAYER_UNLIT = 1 << 2         /* KHR_materials_unlit: base colour is seen as radiance, in cd/m², by every ray
                                          that meets it, bounces too; it reflects nothing, and is no light to sample */
+    KILN_LAYER_CLEARCOAT = 1 << 3,
+    KILN_LAYER_SHEEN = 1 << 4,
+    KILN_LAYER_ANISOTROPY = 1 << 5,
+    KILN_LAYER_IRIDESCENCE = 1 << 6,
+    KILN_LAYER_DISPERSION = 1 << 7,
+    KILN_LAYER_DIFFUSE_TRANSMISSION = 1 << 8,
+    KILN_LAYER_VOLUME_SCATTER = 1 << 9, /* of the volume; nothing without KILN_LAYER_VOLUME */
+    KILN_LAYER_GLOSSINESS = 1 << 10     /* roughness is 1 − value × texture (KHR_materials_pbrSpecularGlossiness) */
 } kiln_layer;
 
 typedef struct kiln_material {
@@ -67,6 +75,22 @@ typedef struct kiln_material {
     kiln_param1 thickness;      /* > 0: the mesh is a closed solid; 0: an infinitely thin wall */
     float attenuation_distance; /* metres; 0 stands for infinity: clear */
     float attenuation_color[3];
+    int32_t priority;           /* where volumes overlap the higher one is there; equal ones: that of the smaller mesh */
+    kiln_param1 clearcoat, clearcoat_roughness, clearcoat_normal; /* KHR_materials_clearcoat */
+    kiln_param3 sheen_color;                                      /* KHR_materials_sheen */
+    kiln_param1 sheen_roughness;
+    kiln_param1 anisotropy;       /* KHR_materials_anisotropy: strength; its texture holds the direction in R and G, [0,1]
+                                     for [−1,1], and B × strength */
+    float anisotropy_rotation;    /* radians, counter-clockwise from the tangent */
+    kiln_param1 iridescence;      /* KHR_materials_iridescence */
+    float iridescence_ior;        /* of the film, ≥ 1 */
+    float iridescence_thickness[2]; /* nanometres, where the texture's channel is 0 and 1; without a texture [1] */
+    kiln_texture iridescence_thickness_texture;
+    kiln_param1 diffuse_transmission; /* KHR_materials_diffuse_transmission */
+    kiln_param3 diffuse_transmission_color;
+    float dispersion;             /* KHR_materials_dispersion: 20/V, V the Abbe number; 0: none */
+    float multiscatter_color[3];  /* KHR_materials_volume_scatter: albedo after all scattering, [0,1] */
+    float scatter_anisotropy;     /* of Henyey and Greenstein's phase function, (−1, 1) */
 } kiln_material;
 
 /* glTF's defaults: white, metallic 1, roughness 1, opaque, single-sided, ior 1.5, no layers. */
