@@ -44,7 +44,7 @@ typedef enum kiln_alpha_mode { KILN_ALPHA_OPAQUE, KILN_ALPHA_MASK, KILN_ALPHA_BL
 typedef enum kiln_layer {
     KILN_LAYER_TRANSMISSION = 1 << 0, /* KHR_materials_transmission */
     KILN_LAYER_VOLUME = 1 << 1,       /* KHR_materials_volume: the surface bounds a solid */
-    KILN_LAYER_UNLIT = 1 << 2         /* KHR_materials_unlit: base colour is seen as radiance, in cd/m², by every ray
+    KILN_LAYER_UNLIT = 1 << 2,        /* KHR_materials_unlit: base colour is seen as radiance, in cd/m², by every ray
                                          that meets it, bounces too; it reflects nothing, and is no light to sample */
     KILN_LAYER_CLEARCOAT = 1 << 3,
     KILN_LAYER_SHEEN = 1 << 4,
