@@ -104,21 +104,47 @@ static void print_means(const char *name, what w) {
     printf("};\n\n");
 }
 
+/* η of a slice of the interface table. */
+static double slice_eta(int k) {
+    double s = 2.0 * k / (ALBEDO_IORS - 1) - 1, x = (double)ALBEDO_X_MAX * s * fabs(s);
+    return (1 + x) / (1 - x);
+}
+
+/* 2 ∫ E(mu) mu dmu over one row of nodes, E linear in t as the look-up has it: midpoints. */
+static double mean_of_row(const double *row, double alpha) {
+    enum { STEPS = 32 };
+    double sum = 0, before = 0;
+    for (int i = 0; i + 1 < ALBEDO_GRAZING; i++)
+        for (int k = 1; k <= STEPS; k++) {
+            double t = (i + (double)k / STEPS) / (ALBEDO_GRAZING - 1), s = t * t, mu = alpha * s / (1 + alpha - s);
+            sum += (row[i] + (k - 0.5) / STEPS * (row[i + 1] - row[i])) * (mu * mu - before * before);
+            before = mu;
+        }
+    return sum;
+}
+
+static void print_interface(void) {
+    static double mean[ALBEDO_IORS][ALBEDO_ROUGHNESS];
+    printf("const float albedo_interface_table[ALBEDO_SLICE * ALBEDO_IORS] = {\n");
+    for (int k = 0; k < ALBEDO_IORS; k++)
+        for (int j = 0; j < ALBEDO_ROUGHNESS; j++) {
+            double a = albedo_row_alpha(j), row[ALBEDO_GRAZING];
+            for (int i = 0; i < ALBEDO_GRAZING; i++)
+                put(row[i] = albedo(INTERFACE, grazing_mu(i, a), a, slice_eta(k)));
+            mean[k][j] = mean_of_row(row, a);
+        }
+    printf("};\n\nconst float albedo_interface_mean_table[ALBEDO_ROUGHNESS * ALBEDO_IORS] = {\n");
+    for (int k = 0; k < ALBEDO_IORS; k++)
+        for (int j = 0; j < ALBEDO_ROUGHNESS; j++) put(mean[k][j]);
+    printf("};\n");
+}
+
 int main(void) {
     printf("/* Printed by tools/make_albedo_tables.c. */\n#include \"render/bsdf/albedo.h\"\n\n");
     print_rows("albedo_full_table", FULL, ALBEDO_GRAZING, "ALBEDO_SLICE");
     print_means("albedo_full_mean_table", FULL);
     print_rows("albedo_schlick_table", SCHLICK, ALBEDO_SHAPE, "ALBEDO_SHAPE * ALBEDO_ROUGHNESS");
     print_means("albedo_schlick_mean_table", SCHLICK);
-    printf("const float albedo_interface_table[ALBEDO_SLICE * ALBEDO_IORS] = {\n");
-    for (int k = 0; k < ALBEDO_IORS; k++) {
-        double s = 2.0 * k / (ALBEDO_IORS - 1) - 1, x = ALBEDO_X_MAX * s * fabs(s);
-        for (int j = 0; j < ALBEDO_ROUGHNESS; j++)
-            for (int i = 0; i < ALBEDO_GRAZING; i++) {
-                double a = albedo_row_alpha(j);
-                put(albedo(INTERFACE, grazing_mu(i, a), a, (1 + x) / (1 - x)));
-            }
-    }
-    printf("};\n");
+    print_interface();
     return 0;
 }

@@ -8,7 +8,6 @@
 #define KILN_RENDER_BSDF_ALBEDO_H
 
 #include <math.h>
-#include <stddef.h>
 #include <stdint.h>
 
 enum { ALBEDO_GRAZING = 24, ALBEDO_SHAPE = 16, ALBEDO_ROUGHNESS = 16, ALBEDO_IORS = 64 };
@@ -24,6 +23,7 @@ extern const float albedo_schlick_table[ALBEDO_SHAPE * ALBEDO_ROUGHNESS];
 extern const float albedo_schlick_mean_table[ALBEDO_ROUGHNESS];
 /* Reflection and refraction together at a dielectric interface: t by roughness by η of the far side over wo's. */
 extern const float albedo_interface_table[ALBEDO_SLICE * ALBEDO_IORS];
+extern const float albedo_interface_mean_table[ALBEDO_ROUGHNESS * ALBEDO_IORS];
 
 /* GGX alpha of a row. Roughness 0 is a mirror; its row is that of a roughness near enough to have a limit. */
 static inline double albedo_row_alpha(int row) {
@@ -75,20 +75,21 @@ static inline float albedo_schlick_mean(albedo_node roughness) {
     return albedo_linear(albedo_schlick_mean_table, roughness);
 }
 
-/* Slices of the interface table at the η of a material, one for each side, in one array: a slice is its values, then
- * their mean by roughness. `slice` is its first element's index. */
-enum { ALBEDO_SLICE_FLOATS = ALBEDO_SLICE + ALBEDO_ROUGHNESS };
-
-void albedo_make_slice(float eta, float slice[ALBEDO_SLICE_FLOATS]);
-
-static inline float albedo_interface(const float *slices, int32_t slice, float mu, float alpha, albedo_node roughness) {
-    albedo_node column = albedo_node_of(albedo_grazing_coordinate(mu, alpha), ALBEDO_GRAZING);
-    column.index += slice;
-    return albedo_bilinear(slices, ALBEDO_GRAZING, column, roughness);
+/* Where η of the far side over the near one lies among the slices of the interface table. */
+static inline albedo_node albedo_ior_node(float eta) {
+    float x = (eta - 1.0f) / (eta + 1.0f), k = sqrtf(fabsf(x) * (1.0f / ALBEDO_X_MAX));
+    return albedo_node_of(0.5f + copysignf(0.5f * k, x), ALBEDO_IORS);
 }
-static inline float albedo_interface_mean(const float *slices, int32_t slice, albedo_node roughness) {
-    roughness.index += slice + ALBEDO_SLICE;
-    return albedo_linear(slices, roughness);
+
+static inline float albedo_interface(albedo_node ior, float mu, float alpha, albedo_node roughness) {
+    albedo_node column = albedo_node_of(albedo_grazing_coordinate(mu, alpha), ALBEDO_GRAZING);
+    column.index += ior.index * ALBEDO_SLICE;
+    float low = albedo_bilinear(albedo_interface_table, ALBEDO_GRAZING, column, roughness);
+    column.index += ALBEDO_SLICE;
+    return low + ior.fraction * (albedo_bilinear(albedo_interface_table, ALBEDO_GRAZING, column, roughness) - low);
+}
+static inline float albedo_interface_mean(albedo_node ior, albedo_node roughness) {
+    return albedo_bilinear(albedo_interface_mean_table, ALBEDO_ROUGHNESS, roughness, ior);
 }
 
 #endif

@@ -37,7 +37,6 @@ typedef struct surface {
     float transmission;
     float eta;            /* n of the far side over n of wo's side; thin wall: of the wall over the air */
     float thin;           /* 1: an infinitely thin wall, 0: the boundary of a solid */
-    int32_t near_slice, far_slice; /* of albedo_interface, seen from wo's side and from the far side */
 } surface;
 
 /* Everything about a point and its wo that sampling and evaluation share. */
@@ -53,7 +52,7 @@ typedef struct bsdf {
     vec3 tint;                      /* interface · base: TRANSMISSION's F is tint (1 − exact) */
     float eta, thin;
     float again_near, again_far;    /* multiple scattering of the interface, but for its factors at wi */
-    int32_t far_slice, near_slice;
+    albedo_node near_ior, far_ior;  /* of albedo_interface, seen from wo's side and from the far side */
     vec3 wide;                      /* albedo of DIFFUSE and BELOW together */
     float p_diffuse, p_below, p_reflect, p_transmit; /* selection probabilities; sum 1, or all 0: black */
 } bsdf;
@@ -99,14 +98,14 @@ KERNEL vec3 bsdf_coat_albedo(const bsdf *b, float mu, float full, albedo_node ro
 
 /* What an interface loses to multiple scattering, seen from mu; thin walls lose what a mirror would, and what goes
  * straight on loses nothing. */
-KERNEL float bsdf_interface_loss(const bsdf *b, const float *slices, int32_t slice, float mu, float full,
+KERNEL float bsdf_interface_loss(const bsdf *b, albedo_node ior, float mu, float full,
                                  albedo_node roughness) {
-    float e = fm_lerp(albedo_interface(slices, slice, mu, b->alpha, roughness), full, b->thin);
+    float e = fm_lerp(albedo_interface(ior, mu, b->alpha, roughness), full, b->thin);
     return (1.0f - e) * (bsdf_is_straight(b) ? 0.0f : 1.0f);
 }
-KERNEL float bsdf_interface_mean_loss(const bsdf *b, const float *slices, int32_t slice, float full_mean,
+KERNEL float bsdf_interface_mean_loss(const bsdf *b, albedo_node ior, float full_mean,
                                       albedo_node roughness) {
-    float e = fm_lerp(albedo_interface_mean(slices, slice, roughness), full_mean, b->thin);
+    float e = fm_lerp(albedo_interface_mean(ior, roughness), full_mean, b->thin);
     return fm_max(1.0f - e, 1e-4f); /* a divisor; where it is this small there is nothing to compensate */
 }
 
@@ -131,11 +130,11 @@ KERNEL vec3 bsdf_make_metal(bsdf *b, const surface *s, float full, float full_me
 }
 
 /* What the interface loses is shared out so that as much crosses from either side: (1 − κ_a) n_a² M_a is symmetric. */
-KERNEL void bsdf_make_interface(bsdf *b, const surface *s, const float *slices, float full, float full_mean,
+KERNEL void bsdf_make_interface(bsdf *b, float full, float full_mean,
                                 albedo_node roughness, float *reflected, float *passed) {
-    float loss = bsdf_interface_loss(b, slices, s->near_slice, b->wo.z, full, roughness);
-    float near_mean = bsdf_interface_mean_loss(b, slices, s->near_slice, full_mean, roughness);
-    float far_mean = bsdf_interface_mean_loss(b, slices, s->far_slice, full_mean, roughness);
+    float loss = bsdf_interface_loss(b, b->near_ior, b->wo.z, full, roughness);
+    float near_mean = bsdf_interface_mean_loss(b, b->near_ior, full_mean, roughness);
+    float far_mean = bsdf_interface_mean_loss(b, b->far_ior, full_mean, roughness);
     float eta2 = b->thin > 0.5f ? 1.0f : b->eta * b->eta;
     float pass = eta2 * far_mean / (near_mean + eta2 * far_mean);
     *reflected = (1.0f - pass) * loss;
@@ -153,7 +152,7 @@ KERNEL float bsdf_transmission_weight(const bsdf *b) {
     return bsdf_is_straight(b) ? average(v3_mul(b->tint, flat)) : fm_max(average(v3_mul(b->tint, rough)), least);
 }
 
-KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo, const float *slices) {
+KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo) {
     bsdf b = {.wo = wo, .diffuse = s->base, .wide = s->base, .p_diffuse = average(s->base) > 0.0f ? 1.0f : 0.0f};
     if (!(mask & BSDF_GLOSSY)) return b;
     float dielectric = 1.0f - s->metallic, t = mask & BSDF_TRANSMISSIVE ? s->transmission : 0.0f;
@@ -179,9 +178,9 @@ KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo, const float *sli
         b.tint = v3_scale(s->base, b.interface);
         b.eta = s->eta;
         b.thin = s->thin;
-        b.near_slice = s->near_slice;
-        b.far_slice = s->far_slice;
-        bsdf_make_interface(&b, s, slices, full, full_mean, roughness, &reflected, &passed);
+        b.near_ior = albedo_ior_node(s->eta);
+        b.far_ior = albedo_ior_node(1.0f / s->eta); /* η ≥ 1/1000 */
+        bsdf_make_interface(&b, full, full_mean, roughness, &reflected, &passed);
         w_diffuse += b.interface * reflected;
         w_below = average(b.tint) * passed;
         w_transmit = bsdf_transmission_weight(&b);
@@ -198,13 +197,13 @@ KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo, const float *sli
 
 /* Directional albedo at wo: what a denoiser wants to know. The interface's Fresnel term is taken about where visible
  * microfacets face wo. */
-KERNEL vec3 bsdf_albedo(unsigned mask, const bsdf *b, const float *slices) {
+KERNEL vec3 bsdf_albedo(unsigned mask, const bsdf *b) {
     if (!(mask & BSDF_GLOSSY)) return b->wide;
     albedo_node roughness = albedo_roughness_node(b->roughness);
     float full = bsdf_full(b->wo.z, b->alpha, roughness), share = bsdf_schlick_share(b, b->wo.z, roughness);
     vec3 sum = v3_madd(b->wide, full, v3_madd(b->reflect0, share, b->reflect1));
     if (!(mask & BSDF_TRANSMISSIVE)) return sum;
-    float kept = 1.0f - bsdf_interface_loss(b, slices, b->near_slice, b->wo.z, full, roughness);
+    float kept = 1.0f - bsdf_interface_loss(b, b->near_ior, b->wo.z, full, roughness);
     vec3 f = bsdf_interface_fresnel(b, b->wo.z + b->alpha * (1.0f - b->wo.z)), passes = v3_mul(b->tint, v3_sub(v3_splat(1.0f), f));
     return v3_madd(sum, kept, v3_madd(passes, b->interface, f));
 }
@@ -212,7 +211,7 @@ KERNEL vec3 bsdf_albedo(unsigned mask, const bsdf *b, const float *slices) {
 /* f(wo, wi) |cos θi| of everything that is not a delta, and the density with which sample chooses wi. */
 typedef struct bsdf_value { vec3 value; float pdf; } bsdf_value;
 
-KERNEL bsdf_value bsdf_evaluate_above(unsigned mask, const bsdf *b, vec3 wi, const float *slices) {
+KERNEL bsdf_value bsdf_evaluate_above(unsigned mask, const bsdf *b, vec3 wi) {
     float cosine = diffuse_pdf(wi, 1.0f);
     if (!(mask & BSDF_GLOSSY)) return (bsdf_value){v3_scale(b->diffuse, cosine), b->p_diffuse * cosine};
     float mu = fm_max(wi.z, 0.0f);
@@ -221,7 +220,7 @@ KERNEL bsdf_value bsdf_evaluate_above(unsigned mask, const bsdf *b, vec3 wi, con
     vec3 enters = v3_sub(v3_splat(1.0f), bsdf_coat_albedo(b, mu, full, roughness));
     vec3 wide = v3_madd(v3_mul(b->diffuse, enters), 1.0f - full, b->metal_again);
     if (mask & BSDF_TRANSMISSIVE) {
-        float loss = bsdf_interface_loss(b, slices, b->near_slice, mu, full, roughness);
+        float loss = bsdf_interface_loss(b, b->near_ior, mu, full, roughness);
         wide = v3_add(wide, v3_splat(b->again_near * loss));
     }
     vec3 h = v3_normalize(v3_add(b->wo, v3(wi.x, wi.y, mu))); /* wo.z > 0: not zero */
@@ -233,11 +232,11 @@ KERNEL bsdf_value bsdf_evaluate_above(unsigned mask, const bsdf *b, vec3 wi, con
     return (bsdf_value){v3_madd(v3_scale(wide, cosine), value, f), b->p_diffuse * cosine + b->p_reflect * pdf};
 }
 
-KERNEL bsdf_value bsdf_evaluate_below(const bsdf *b, vec3 wi, const float *slices) {
+KERNEL bsdf_value bsdf_evaluate_below(const bsdf *b, vec3 wi) {
     float cosine = diffuse_pdf(wi, -1.0f), mu = fm_max(-wi.z, 0.0f);
     albedo_node roughness = albedo_roughness_node(b->roughness);
     float full = bsdf_full(mu, b->alpha, roughness);
-    float again = b->again_far * bsdf_interface_loss(b, slices, b->far_slice, mu, full, roughness);
+    float again = b->again_far * bsdf_interface_loss(b, b->far_ior, mu, full, roughness);
     float alpha = fm_max(b->alpha, GGX_ALPHA_MIN);
     int live = (wi.z < 0.0f) & !bsdf_is_straight(b), thin = b->thin > 0.5f;
     /* A thin wall passes light on as it would have reflected it, mirrored at the wall (KHR_materials_transmission). */
@@ -252,10 +251,10 @@ KERNEL bsdf_value bsdf_evaluate_below(const bsdf *b, vec3 wi, const float *slice
     return (bsdf_value){v3_mul(b->tint, sum), b->p_below * cosine + (live ? b->p_transmit * pdf : 0.0f)};
 }
 
-KERNEL bsdf_value bsdf_evaluate(unsigned mask, const bsdf *b, vec3 wi, const float *slices) {
-    bsdf_value above = bsdf_evaluate_above(mask, b, wi, slices);
+KERNEL bsdf_value bsdf_evaluate(unsigned mask, const bsdf *b, vec3 wi) {
+    bsdf_value above = bsdf_evaluate_above(mask, b, wi);
     if (!(mask & BSDF_TRANSMISSIVE)) return above;
-    bsdf_value below = bsdf_evaluate_below(b, wi, slices);
+    bsdf_value below = bsdf_evaluate_below(b, wi);
     int up = wi.z > 0.0f;
     return (bsdf_value){v3_select(up, above.value, below.value), up ? above.pdf : below.pdf};
 }
@@ -269,7 +268,7 @@ typedef struct bsdf_sampled {
 } bsdf_sampled;
 
 /* u.lobe chooses the lobe, u.direction its direction. */
-KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 direction, const float *slices) {
+KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 direction) {
     vec3 wi = diffuse_sample(direction, 1.0f);
     if (!(mask & BSDF_GLOSSY))
         return (bsdf_sampled){wi, v3_scale(b->diffuse, b->p_diffuse), b->p_diffuse * diffuse_pdf(wi, 1.0f), 0};
@@ -301,7 +300,7 @@ KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 d
     /* A microfacet may send light to the wrong side of the surface, or refuse to refract: absorbed; the energy comes
      * back as multiple scattering. */
     int lives = ((transmit | below) ? wi.z < 0.0f : wi.z > 0.0f) & refracts;
-    bsdf_value v = bsdf_evaluate(mask, b, wi, slices);
+    bsdf_value v = bsdf_evaluate(mask, b, wi);
     float scale = lives & (v.pdf > 0.0f) ? 1.0f / v.pdf : 0.0f;
     vec3 multiplier = v3_scale(v.value, scale);
     vec3 at_delta = v3_scale(bsdf_reflection_fresnel(mask, b, b->wo.z), 1.0f / fm_max(b->p_reflect, 1e-30f));

@@ -65,7 +65,6 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) } path_hit;
     X(float, metallic) X(float, roughness) X(float, specular) X(float, f0)                                             \
     X(float, tint_r) X(float, tint_g) X(float, tint_b) /* of the coat's F0 */                                          \
     X(float, transmission) X(float, eta) X(float, thin)                                                                \
-    X(int32_t, near_slice) X(int32_t, far_slice)                                                                       \
     X(uint32_t, medium)                          /* behind the surface; 0: none */                                     \
     X(uint32_t, crosses)                         /* the next ray lies on the far side */                               \
     X(float, emit_r) X(float, emit_g) X(float, emit_b)                                                                 \

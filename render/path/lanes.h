@@ -18,16 +18,14 @@ KERNEL surface lane_surface(unsigned mask, const path_scratch *x, uint32_t i) {
         s.transmission = x->transmission[i];
         s.eta = x->eta[i];
         s.thin = x->thin[i];
-        s.near_slice = x->near_slice[i];
-        s.far_slice = x->far_slice[i];
     }
     return s;
 }
 
-KERNEL shading lane_shading(unsigned mask, const path_state *s, const path_scratch *x, uint32_t i, const float *slices) {
+KERNEL shading lane_shading(unsigned mask, const path_state *s, const path_scratch *x, uint32_t i) {
     surface u = lane_surface(mask, x, i);
     return shading_make(mask, &u, v3(x->px[i], x->py[i], x->pz[i]), v3(x->gx[i], x->gy[i], x->gz[i]),
-                        v3(x->nx[i], x->ny[i], x->nz[i]), x->reach[i], v3(-s->dx[i], -s->dy[i], -s->dz[i]), slices);
+                        v3(x->nx[i], x->ny[i], x->nz[i]), x->reach[i], v3(-s->dx[i], -s->dy[i], -s->dz[i]));
 }
 
 #endif

@@ -19,9 +19,9 @@ typedef struct shading {
 } shading;
 
 KERNEL shading shading_make(unsigned mask, const surface *s, vec3 position, vec3 geometric, vec3 normal, float reach,
-                            vec3 wo, const float *slices) {
+                            vec3 wo) {
     frame f = frame_make(normal);
-    return (shading){f, bsdf_make(mask, s, frame_to_local(&f, wo), slices), position, geometric, reach};
+    return (shading){f, bsdf_make(mask, s, frame_to_local(&f, wo)), position, geometric, reach};
 }
 
 /* A direction must lie on the same side of the real surface as of the shaded one, or light would leak through. */
@@ -43,9 +43,9 @@ typedef struct shading_connection {
 
 /* throughput · f cos · radiance · weight / density. density: of the direction, times the probability of the light. */
 KERNEL shading_connection shading_connect(unsigned mask, const shading *s, kiln_estimator estimator, vec3 throughput,
-                                          const light_sampled *l, float density, const float *slices) {
+                                          const light_sampled *l, float density) {
     vec3 local = frame_to_local(&s->frame, l->wi);
-    bsdf_value f = bsdf_evaluate(mask, &s->bsdf, local, slices);
+    bsdf_value f = bsdf_evaluate(mask, &s->bsdf, local);
     float weight = estimate_light_weight(estimator, l->parallel, density, f.pdf);
     int comes = shading_side_agrees(s, local, l->wi) & (density > 0.0f);
     vec3 sum = v3_mul(v3_mul(throughput, f.value), l->radiance);
@@ -64,9 +64,8 @@ typedef struct shading_scattering {
     int crosses; /* it lies on the far side */
 } shading_scattering;
 
-KERNEL shading_scattering shading_scatter(unsigned mask, const shading *s, vec3 throughput, float lobe, vec2 direction,
-                                          const float *slices) {
-    bsdf_sampled next = bsdf_sample(mask, &s->bsdf, lobe, direction, slices);
+KERNEL shading_scattering shading_scatter(unsigned mask, const shading *s, vec3 throughput, float lobe, vec2 direction) {
+    bsdf_sampled next = bsdf_sample(mask, &s->bsdf, lobe, direction);
     vec3 wi = v3_normalize(frame_to_world(&s->frame, next.wi));
     float goes_on = shading_side_agrees(s, next.wi, wi) ? 1.0f : 0.0f;
     return (shading_scattering){shading_leave(s, wi), wi, v3_scale(v3_mul(throughput, next.multiplier), goes_on),

@@ -1,12 +1,12 @@
 #include "render/path/lanes.h"
 #include "render/path/stages.h"
 
-KERNEL void write_albedo(unsigned mask, const path_context *c, batch *b, lane_range lanes) {
+KERNEL void write_albedo(unsigned mask, batch *b, lane_range lanes) {
     const path_state *s = batch_state(b);
     path_output *o = &b->out;
     for (uint32_t i = lanes.first; i < lanes.end; i++) {
-        shading p = lane_shading(mask, s, &b->scratch, i, c->world->slices);
-        vec3 a = bsdf_albedo(mask, &p.bsdf, c->world->slices);
+        shading p = lane_shading(mask, s, &b->scratch, i);
+        vec3 a = bsdf_albedo(mask, &p.bsdf);
         o->albedo[0][s->slot[i]] = a.x, o->albedo[1][s->slot[i]] = a.y, o->albedo[2][s->slot[i]] = a.z;
     }
 }
@@ -24,7 +24,7 @@ void STAGE(aovs)(const path_context *c, batch *b) {
         o->depth[slot] = v3_dot(from, axis) * metres;
     }
     if (!(c->aovs & 1u << KILN_AOV_ALBEDO)) return;
-    write_albedo(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
-    write_albedo(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
-    write_albedo(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
+    write_albedo(SHADING_MASK_DIFFUSE, b, b->kinds[KIND_DIFFUSE]);
+    write_albedo(SHADING_MASK_GLOSSY, b, b->kinds[KIND_GLOSSY]);
+    write_albedo(SHADING_MASK_TRANSMISSIVE, b, b->kinds[KIND_TRANSMISSIVE]);
 }

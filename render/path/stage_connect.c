@@ -5,17 +5,16 @@
 KERNEL void weigh(unsigned mask, const path_context *c, batch *b, lane_range lanes) {
     const path_state *s = batch_state(b);
     path_scratch *x = &b->scratch;
-    const float *slices = c->world->slices;
     kiln_estimator estimator = c->estimator;
     LANE_LOOP (uint32_t i = lanes.first; i < lanes.end; i++) {
-        shading p = lane_shading(mask, s, x, i, slices);
+        shading p = lane_shading(mask, s, x, i);
         light_sampled l = {.wi = {x->wx[i], x->wy[i], x->wz[i]},
                            .target = {x->tx[i], x->ty[i], x->tz[i]},
                            .distance = x->distance[i],
                            .radiance = {x->cr[i], x->cg[i], x->cb[i]},
                            .parallel = x->parallel[i] > 0.5f};
         vec3 throughput = {s->tr[i], s->tg[i], s->tb[i]};
-        shading_connection r = shading_connect(mask, &p, estimator, throughput, &l, x->light_pdf[i], slices);
+        shading_connection r = shading_connect(mask, &p, estimator, throughput, &l, x->light_pdf[i]);
         x->cr[i] = r.contribution.x, x->cg[i] = r.contribution.y, x->cb[i] = r.contribution.z;
         x->sox[i] = r.origin.x, x->soy[i] = r.origin.y, x->soz[i] = r.origin.z;
         x->sdx[i] = r.direction.x, x->sdy[i] = r.direction.y, x->sdz[i] = r.direction.z;

@@ -21,8 +21,6 @@ static void load_transmissive(const world *w, path_scratch *x, uint32_t i) {
     x->transmission[i] = m->transmission;
     x->thin[i] = m->thin;
     x->eta[i] = outside ? m->eta : 1.0f / m->eta;
-    x->near_slice[i] = outside ? m->slice_outside : m->slice_inside;
-    x->far_slice[i] = outside ? m->slice_inside : m->slice_outside;
     x->medium[i] = m->medium;
 }
 

@@ -6,13 +6,12 @@
 KERNEL void scatter(unsigned mask, const path_context *c, batch *b, lane_range lanes) {
     path_state *s = batch_state(b);
     path_scratch *x = &b->scratch;
-    const float *slices = c->world->slices;
     roulette policy = roulette_make(c, b->depth);
     LANE_LOOP (uint32_t i = lanes.first; i < lanes.end; i++) {
-        shading p = lane_shading(mask, s, x, i, slices);
+        shading p = lane_shading(mask, s, x, i);
         vec3 throughput = {s->tr[i], s->tg[i], s->tb[i]};
         vec2 u = {x->u_bsdf_x[i], x->u_bsdf_y[i]};
-        shading_scattering r = shading_scatter(mask, &p, throughput, x->u_lobe[i], u, slices);
+        shading_scattering r = shading_scatter(mask, &p, throughput, x->u_lobe[i], u);
         float squeeze = s->squeeze[i];
         if (mask & BSDF_TRANSMISSIVE) {
             int bends = r.crosses & (p.bsdf.thin < 0.5f);

@@ -2,7 +2,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "render/bsdf/albedo.h"
 #include "render/world/images.h"
 #include "render/world/world.h"
 #include "scene/transfer.h"
@@ -102,20 +101,6 @@ static bool add_texture(builder *b, const slot_use *use, uint32_t *handle) {
     return true;
 }
 
-/* Slices for both sides of an interface; materials of equal IOR share them. */
-static void set_slices(builder *b, world_material *m, uint32_t *slice_count) {
-    for (const world_material *other = b->world->materials; other < m; other++) {
-        if (other->kind != KIND_TRANSMISSIVE || other->eta != m->eta) continue;
-        m->slice_outside = other->slice_outside;
-        m->slice_inside = other->slice_inside;
-        return;
-    }
-    m->slice_outside = (int32_t)(*slice_count)++ * ALBEDO_SLICE_FLOATS;
-    m->slice_inside = (int32_t)(*slice_count)++ * ALBEDO_SLICE_FLOATS;
-    albedo_make_slice(m->eta, b->world->slices + m->slice_outside);
-    albedo_make_slice(1.0f / m->eta, b->world->slices + m->slice_inside);
-}
-
 /* Absorption after Beer: attenuation_color is what is left after attenuation_distance. Every solid is a medium, also a
  * clear one: a path that enters it must know when it leaves what is around. */
 static bool set_medium(builder *b, world_material *m, const kiln_material *from) {
@@ -204,22 +189,20 @@ static uint32_t want_images(builder *b, const bool *used) {
 
 static bool build(builder *b, const bool *used, uint32_t threads) {
     world *w = b->world;
-    uint32_t textures = want_images(b, used), slices = 0;
+    uint32_t textures = want_images(b, used);
     if (!images_decode(b->images, b->scene, threads, b->report)) return false;
     w->material_count = b->scene->material_count + 1;
     w->materials = ARENA_ARRAY(&w->arena, world_material, w->material_count);
     w->textures = ARENA_ARRAY(&w->arena, world_texture, (size_t)textures + 1);
-    w->slices = ARENA_ARRAY(&w->arena, float, (size_t)w->material_count * 2 * ALBEDO_SLICE_FLOATS);
     w->media = ARENA_ARRAY(&w->arena, float, 3 * ((size_t)w->material_count + 1));
     w->media_count = 1;
-    if (!w->materials || !w->textures || !w->slices || !w->media) return report_no_memory(b->report, "building materials");
+    if (!w->materials || !w->textures || !w->media) return report_no_memory(b->report, "building materials");
     for (uint32_t i = 0; i < w->material_count; i++) {
         if (!used[i]) continue;
         world_material *m = &w->materials[i];
         const kiln_material *from = scene_material(b->scene, i);
         set_constants(b, m, from);
         if (!set_medium(b, m, from)) return false;
-        if (m->kind == KIND_TRANSMISSIVE) set_slices(b, m, &slices);
         if (!set_textures(b, m, from)) return false;
         w->kinds |= 1u << m->kind;
         w->flags |= m->flags;

@@ -58,7 +58,6 @@ typedef struct world_material {
     float f0, eta, specular, specular_color[3], transmission, thin;
     float alpha_cutoff;
     uint32_t medium;           /* behind the surface: into world.media; 0: none that matters */
-    int32_t slice_outside, slice_inside; /* of world.slices */
     uint32_t texture[SLOT_COUNT];        /* 1 + index into world.textures; 0: none */
     uint32_t flags;
     material_kind kind;
@@ -95,7 +94,6 @@ typedef struct world {
     uint32_t image_count;
     uint32_t uv_sets[WORLD_UV_SETS]; /* the scene's numbers of the UV sets in use */
     uint32_t uv_set_count;
-    float *slices;       /* of albedo_interface */
     uint32_t slots;      /* bits of material_slot that some material has a texture in */
     uint32_t kinds;      /* bits of material_kind that occur */
     uint32_t flags;      /* union of the materials' flags that occur */

@@ -50,20 +50,17 @@ void subject_make(subject *to, const bsdf_case *c) {
     to->row = c;
     to->surface = (surface){.base = c->base, .metallic = c->metallic, .specular = c->specular,
                             .specular_color = c->specular_color, .f0 = c->ior > 0 ? root * root : 1.0f,
-                            .transmission = c->transmission, .eta = eta, .thin = c->thin ? 1.0f : 0.0f,
-                            .near_slice = 0, .far_slice = ALBEDO_SLICE_FLOATS};
-    albedo_make_slice(eta, to->slices);
-    albedo_make_slice(1 / eta, to->slices + ALBEDO_SLICE_FLOATS);
+                            .transmission = c->transmission, .eta = eta, .thin = c->thin ? 1.0f : 0.0f};
 }
 
-static bsdf make(unsigned mask, const surface *s, vec3 wo, const float *slices) {
-    return mask == D ? bsdf_make(D, s, wo, slices) : mask == G ? bsdf_make(G, s, wo, slices) : bsdf_make(T, s, wo, slices);
+static bsdf make(unsigned mask, const surface *s, vec3 wo) {
+    return mask == D ? bsdf_make(D, s, wo) : mask == G ? bsdf_make(G, s, wo) : bsdf_make(T, s, wo);
 }
 
 probe probe_make(const subject *from, float roughness, vec3 wo) {
-    probe p = {.mask = from->row->mask, .surface = from->surface, .slices = from->slices};
+    probe p = {.mask = from->row->mask, .surface = from->surface};
     p.surface.roughness = roughness;
-    p.bsdf = make(p.mask, &p.surface, wo, p.slices);
+    p.bsdf = make(p.mask, &p.surface, wo);
     return p;
 }
 
@@ -71,29 +68,27 @@ probe probe_reverse(const probe *from, vec3 wi) {
     probe p = *from;
     if (wi.z < 0 && p.surface.thin < 0.5f) {
         p.surface.eta = 1 / p.surface.eta;
-        p.surface.near_slice = from->surface.far_slice;
-        p.surface.far_slice = from->surface.near_slice;
     }
-    p.bsdf = make(p.mask, &p.surface, v3(wi.x, wi.y, fabsf(wi.z)), p.slices);
+    p.bsdf = make(p.mask, &p.surface, v3(wi.x, wi.y, fabsf(wi.z)));
     return p;
 }
 
 bsdf_value probe_evaluate(const probe *p, vec3 wi) {
-    return p->mask == D   ? bsdf_evaluate(D, &p->bsdf, wi, p->slices)
-           : p->mask == G ? bsdf_evaluate(G, &p->bsdf, wi, p->slices)
-                          : bsdf_evaluate(T, &p->bsdf, wi, p->slices);
+    return p->mask == D   ? bsdf_evaluate(D, &p->bsdf, wi)
+           : p->mask == G ? bsdf_evaluate(G, &p->bsdf, wi)
+                          : bsdf_evaluate(T, &p->bsdf, wi);
 }
 
 bsdf_sampled probe_sample(const probe *p, float lobe, vec2 direction) {
-    return p->mask == D   ? bsdf_sample(D, &p->bsdf, lobe, direction, p->slices)
-           : p->mask == G ? bsdf_sample(G, &p->bsdf, lobe, direction, p->slices)
-                          : bsdf_sample(T, &p->bsdf, lobe, direction, p->slices);
+    return p->mask == D   ? bsdf_sample(D, &p->bsdf, lobe, direction)
+           : p->mask == G ? bsdf_sample(G, &p->bsdf, lobe, direction)
+                          : bsdf_sample(T, &p->bsdf, lobe, direction);
 }
 
 vec3 probe_albedo(const probe *p) {
-    return p->mask == D   ? bsdf_albedo(D, &p->bsdf, p->slices)
-           : p->mask == G ? bsdf_albedo(G, &p->bsdf, p->slices)
-                          : bsdf_albedo(T, &p->bsdf, p->slices);
+    return p->mask == D   ? bsdf_albedo(D, &p->bsdf)
+           : p->mask == G ? bsdf_albedo(G, &p->bsdf)
+                          : bsdf_albedo(T, &p->bsdf);
 }
 
 vec3 direction_at(double cosine, double turns) {

@@ -20,11 +20,9 @@ typedef struct bsdf_case {
 extern const bsdf_case bsdf_cases[];
 extern const size_t bsdf_case_count;
 
-/* A case with the tables that its index of refraction calls for. */
 typedef struct subject {
     const bsdf_case *row;
     surface surface;
-    float slices[2 * ALBEDO_SLICE_FLOATS];
 } subject;
 void subject_make(subject *, const bsdf_case *);
 
@@ -34,7 +32,6 @@ typedef struct probe {
     unsigned mask;
     surface surface;
     bsdf bsdf;
-    const float *slices;
 } probe;
 
 probe probe_make(const subject *, float roughness, vec3 wo);

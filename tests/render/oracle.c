@@ -122,8 +122,7 @@ static surface look_up(const path_context *c, const hit *h, vec3 *emission, vec3
     const world_material *m = h->material;
     bool outside = h->p.front > 0.5f || m->thin > 0.5f;
     surface s = {v3_load(m->base), m->metallic, m->roughness, m->specular, v3_load(m->specular_color), m->f0,
-                 m->transmission, outside ? m->eta : 1.0f / m->eta, m->thin,
-                 outside ? m->slice_outside : m->slice_inside, outside ? m->slice_inside : m->slice_outside};
+                 m->transmission, outside ? m->eta : 1.0f / m->eta, m->thin};
     *emission = v3_load(m->emission);
     if (w->colors) {
         float tint[4];
@@ -189,7 +188,7 @@ static void connect(const path_context *c, path *p, const hit *h, const shading 
     light_sampled r = light_sample(KIND(LIGHT_KINDS) - 1, &l, s->position, place);
     if (l.varies) r.radiance = v3_mul(r.radiance, lookup_emission(w, l.varies - 1, warp_triangle(place)));
     float density = r.pdf * distribution_probability(c->light_cdf, k);
-    shading_connection n = shading_connect(mask, s, c->estimator, p->throughput, &r, density, w->slices);
+    shading_connection n = shading_connect(mask, s, c->estimator, p->throughput, &r, density);
     if (w->absorbs) {
         uint64_t media = p->media;
         uint32_t medium = h->material->kind == KIND_TRANSMISSIVE ? h->material->medium : 0;
@@ -208,7 +207,7 @@ static void connect(const path_context *c, path *p, const hit *h, const shading 
 /* The BSDF's direction and roulette; false: the path ends. */
 static bool scatter(const path_context *c, path *p, const hit *h, const shading *s, unsigned mask) {
     vec2 direction = draw(c, p, SAMPLE_BSDF), lobe = draw(c, p, SAMPLE_LOBE);
-    shading_scattering r = shading_scatter(mask, s, p->throughput, lobe.x, direction, c->world->slices);
+    shading_scattering r = shading_scatter(mask, s, p->throughput, lobe.x, direction);
     if (mask & BSDF_TRANSMISSIVE && r.crosses) {
         if (s->bsdf.thin < 0.5f) p->squeeze *= s->bsdf.eta * s->bsdf.eta;
         p->media = medium_cross(p->media, h->material->medium, h->p.front > 0.5f);
@@ -242,7 +241,7 @@ oracle_result oracle_trace(const path_context *c, path_sample sample) {
             beyond = true;
         }
         unsigned mask = mask_of(h.material->kind);
-        shading point = shading_make(mask, &s, h.p.position, h.p.geometric, normal, h.p.reach, wo, c->world->slices);
+        shading point = shading_make(mask, &s, h.p.position, h.p.geometric, normal, h.p.reach, wo);
         if (c->light_cdf) connect(c, &p, &h, &point, mask);
         if (!scatter(c, &p, &h, &point, mask)) break;
     }

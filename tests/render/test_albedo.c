@@ -22,9 +22,9 @@ static void entries_are_the_generators(void **state) {
     for (uint32_t n = 0; n < 60; n++) {
         int i = (int)(hash_pair(n, 1) % ALBEDO_GRAZING), j = (int)(hash_pair(n, 2) % ALBEDO_ROUGHNESS);
         int k = (int)(hash_pair(n, 3) % ALBEDO_IORS), h = i % ALBEDO_SHAPE;
-        double a = albedo_row_alpha(j), mu = shape_mu(h), s = 2.0 * k / (ALBEDO_IORS - 1) - 1, x = (double)ALBEDO_X_MAX * s * fabs(s);
+        double a = albedo_row_alpha(j), mu = shape_mu(h), eta = slice_eta(k);
         double entry = albedo(FULL, grazing_mu(i, a), a, 1), share = albedo(SCHLICK, mu, a, 1) / albedo(FULL, mu, a, 1);
-        double interface = albedo(INTERFACE, grazing_mu(i, a), a, (1 + x) / (1 - x));
+        double interface = albedo(INTERFACE, grazing_mu(i, a), a, eta);
         double off = fabs((double)albedo_full_table[j * ALBEDO_GRAZING + i] - entry);
         double off_share = fabs((double)albedo_schlick_table[j * ALBEDO_SHAPE + h] - share);
         double off_interface = fabs((double)albedo_interface_table[k * ALBEDO_SLICE + j * ALBEDO_GRAZING + i] - interface);
@@ -64,56 +64,49 @@ static void look_ups_between_are_near(void **state) {
     }
 }
 
-/* 2 ∫ E μ dμ of the look-up itself. */
-static double mean_of_look_ups(const float *slice, float alpha, albedo_node row) {
+/* 2 ∫ E μ dμ of the look-up itself; ior NULL: of albedo_full. */
+static double mean_of_look_ups(const albedo_node *ior, float alpha, albedo_node row) {
     enum { N = 4096 };
     double sum = 0;
     for (int i = 0; i < N; i++) {
         double t = (i + 0.5) / N, mu = t * t;
-        sum += 4 * mu * t / N * (double)(slice ? albedo_interface(slice, 0, (float)mu, alpha, row) : albedo_full((float)mu, alpha, row));
+        sum += 4 * mu * t / N * (double)(ior ? albedo_interface(*ior, (float)mu, alpha, row) : albedo_full((float)mu, alpha, row));
     }
     return sum;
 }
 
 static void means_are_means(void **state) {
     (void)state;
-    static float slice[ALBEDO_SLICE_FLOATS];
     for (int j = 0; j < ALBEDO_ROUGHNESS; j++) {
         float alpha = (float)albedo_row_alpha(j);
         albedo_node row = albedo_roughness_node((float)j / (ALBEDO_ROUGHNESS - 1));
         if (fabs(mean_of_look_ups(NULL, alpha, row) - (double)albedo_full_mean(row)) > 1e-3)
             fail_msg("row %d: full %g, look-ups %g", j, (double)albedo_full_mean(row), mean_of_look_ups(NULL, alpha, row));
         for (int k = 0; k < 3; k++) {
-            albedo_make_slice((const float[]){1.5f, 1 / 1.5f, 3}[k], slice);
-            double mean = (double)albedo_interface_mean(slice, 0, row);
-            if (fabs(mean_of_look_ups(slice, alpha, row) - mean) > 2e-4) fail_msg("row %d, interface %d: %g", j, k, mean);
+            albedo_node ior = albedo_ior_node((const float[]){1.5f, 1 / 1.5f, 3}[k]);
+            double mean = (double)albedo_interface_mean(ior, row);
+            if (fabs(mean_of_look_ups(&ior, alpha, row) - mean) > 2e-4) fail_msg("row %d, interface %d: %g", j, k, mean);
         }
     }
 }
 
-/* A slice at a node's η is the table's; between two it lies on the line; beyond the ends it is the end's. */
+/* At a slice's η a look-up gives the slice; between two it lies on the line; beyond the ends it is the end's. */
 static void slices_interpolate(void **state) {
     (void)state;
-    static float low[ALBEDO_SLICE_FLOATS], high[ALBEDO_SLICE_FLOATS], between[ALBEDO_SLICE_FLOATS];
+    albedo_node row = {3, 0.0f};
+    float alpha = (float)albedo_row_alpha(3), mu = (float)grazing_mu(5, (double)alpha);
     for (int k = 0; k + 1 < ALBEDO_IORS; k++) {
-        float eta[3];
-        for (int i = 0; i < 3; i++) {
-            double s = 2.0 * (k + 0.5 * i) / (ALBEDO_IORS - 1) - 1, x = (double)ALBEDO_X_MAX * s * fabs(s);
-            eta[i] = (float)((1 + x) / (1 - x));
-        }
-        albedo_make_slice(eta[0], low);
-        albedo_make_slice(eta[1], between);
-        albedo_make_slice(eta[2], high);
-        for (int i = 0; i < ALBEDO_SLICE; i++) {
-            const float *a = albedo_interface_table + k * ALBEDO_SLICE + i, *b = a + ALBEDO_SLICE;
-            assert_true(fabsf(low[i] - *a) < 1e-4f && fabsf(high[i] - *b) < 1e-4f);
-            assert_true(fabsf(between[i] - 0.5f * (*a + *b)) < 1e-4f);
-        }
+        double s = 2 * (k + 0.5) / (ALBEDO_IORS - 1) - 1, x = (double)ALBEDO_X_MAX * s * fabs(s);
+        float at = albedo_interface(albedo_ior_node((float)slice_eta(k)), mu, alpha, row);
+        float between = albedo_interface(albedo_ior_node((float)((1 + x) / (1 - x))), mu, alpha, row);
+        const float *a = albedo_interface_table + k * ALBEDO_SLICE + 3 * ALBEDO_GRAZING + 5, *b = a + ALBEDO_SLICE;
+        if (fabsf(at - *a) > 1e-4f || fabsf(between - 0.5f * (*a + *b)) > 1e-4f)
+            fail_msg("slice %d: %g, not %g; between: %g", k, (double)at, (double)*a, (double)between);
     }
-    albedo_make_slice(1000, high);
-    assert_memory_equal(high, albedo_interface_table + (ALBEDO_IORS - 1) * ALBEDO_SLICE, ALBEDO_SLICE * sizeof(float));
-    albedo_make_slice(0.001f, low);
-    assert_memory_equal(low, albedo_interface_table, ALBEDO_SLICE * sizeof(float));
+    for (int end = 0; end < 2; end++) {
+        albedo_node n = albedo_ior_node(end ? 1000.0f : 0.001f);
+        assert_true(n.index == (end ? ALBEDO_IORS - 2 : 0) && n.fraction == (float)end);
+    }
 }
 
 /* No entry creates light; nearly smooth interfaces lose nothing, seen from above. */

@@ -78,15 +78,13 @@ static surface surface_of(const world_material *m, bool outside) {
     return (surface){.base = v3_load(m->base), .metallic = m->metallic, .roughness = m->roughness,
                      .specular = m->specular, .specular_color = v3_load(m->specular_color), .f0 = m->f0,
                      .transmission = m->transmission,
-                     .eta = outside ? m->eta : 1.0f / m->eta, .thin = m->thin,
-                     .near_slice = outside ? m->slice_outside : m->slice_inside,
-                     .far_slice = outside ? m->slice_inside : m->slice_outside};
+                     .eta = outside ? m->eta : 1.0f / m->eta, .thin = m->thin};
 }
 
-static void check_row(const row *r, const world *w, const world_material *m) {
+static void check_row(const row *r, const world_material *m) {
     surface s = surface_of(m, true);
     const vec3 wo = v3(0.48f, 0.36f, 0.8f);
-    bsdf b = bsdf_make(masks[m->kind], &s, wo, w->slices);
+    bsdf b = bsdf_make(masks[m->kind], &s, wo);
     unsigned lobes = (b.p_diffuse > 0 ? D : 0) | (b.p_below > 0 ? B : 0) | (b.p_reflect > 0 ? R : 0) |
                      (b.p_transmit > 0 ? T : 0);
     if (m->kind != r->kind || lobes != r->lobes) fail_msg("%s: kind %d, lobes %u", r->name, m->kind, lobes);
@@ -95,7 +93,7 @@ static void check_row(const row *r, const world *w, const world_material *m) {
     stream random = {81, 0};
     for (int i = 0; i < 1000; i++) {
         float lobe = stream_next(&random);
-        bsdf_sampled n = bsdf_sample(masks[m->kind], &b, lobe, stream_pair(&random), w->slices);
+        bsdf_sampled n = bsdf_sample(masks[m->kind], &b, lobe, stream_pair(&random));
         bool wide = lobe < b.p_diffuse + b.p_below, reflects = !wide && lobe < b.p_diffuse + b.p_below + b.p_reflect;
         bool delta = lobes && !wide && (reflects ? r->mirror : r->straight);
         if (n.delta != delta || (delta && n.pdf != 0)) fail_msg("%s: lobe at %g", r->name, (double)lobe);
@@ -103,7 +101,7 @@ static void check_row(const row *r, const world *w, const world_material *m) {
         vec3 mirrored = v3(-wo.x, -wo.y, wo.z);
         if (reflects) assert_true(v3_length(v3_sub(n.wi, mirrored)) < 1e-6f);
         else assert_true(n.wi.z < 0 && fabsf(wo.x * n.wi.y - wo.y * n.wi.x) < 1e-6f);
-        if (!(lobes & (D | B))) assert_true(bsdf_evaluate(masks[m->kind], &b, n.wi, w->slices).pdf == 0);
+        if (!(lobes & (D | B))) assert_true(bsdf_evaluate(masks[m->kind], &b, n.wi).pdf == 0);
     }
 }
 
@@ -113,7 +111,7 @@ static void materials_become_lobes(void **state) {
     for (int i = 0; i < ROWS; i++) materials[i] = material_of(&rows[i]);
     scene_builder b;
     world *w = world_with(&b, materials, ROWS);
-    for (int i = 0; i < ROWS; i++) check_row(&rows[i], w, &w->materials[i + 1]);
+    for (int i = 0; i < ROWS; i++) check_row(&rows[i], &w->materials[i + 1]);
     assert_int_equal(w->kinds, 1u << KIND_DIFFUSE | 1u << KIND_GLOSSY | 1u << KIND_TRANSMISSIVE);
     world_destroy(w);
     builder_free(&b);
@@ -130,10 +128,10 @@ static void mirrors_have_a_threshold(void **state) {
         scene_builder b;
         world *w = world_with(&b, &m, 1);
         surface s = surface_of(&w->materials[1], true);
-        bsdf f = bsdf_make(BSDF_GLOSSY, &s, v3(0, 0, 1), w->slices);
-        bsdf_sampled n = bsdf_sample(BSDF_GLOSSY, &f, 0x1.fffffep-1f, (vec2){0.3f, 0.6f}, w->slices);
+        bsdf f = bsdf_make(BSDF_GLOSSY, &s, v3(0, 0, 1));
+        bsdf_sampled n = bsdf_sample(BSDF_GLOSSY, &f, 0x1.fffffep-1f, (vec2){0.3f, 0.6f});
         assert_true(n.delta == cases[i].mirror && (n.pdf == 0) == cases[i].mirror);
-        assert_true((bsdf_evaluate(BSDF_GLOSSY, &f, v3(0, 0, 1), w->slices).pdf > 1) != cases[i].mirror || i == 5);
+        assert_true((bsdf_evaluate(BSDF_GLOSSY, &f, v3(0, 0, 1)).pdf > 1) != cases[i].mirror || i == 5);
         if (n.delta) assert_true(fabsf(n.multiplier.x * f.p_reflect - 1) < 1e-3f); /* white */
         world_destroy(w);
         builder_free(&b);
@@ -163,8 +161,8 @@ static void weights_stay_within_bounds(void **state) {
             surface p = surface_of(m, k & 1);
             vec3 wo = stream_direction(&s);
             wo.z = fmaxf(fabsf(wo.z), 0.01f);
-            bsdf f = bsdf_make(masks[m->kind], &p, v3_normalize(wo), w->slices);
-            vec3 a = bsdf_albedo(masks[m->kind], &f, w->slices);
+            bsdf f = bsdf_make(masks[m->kind], &p, v3_normalize(wo));
+            vec3 a = bsdf_albedo(masks[m->kind], &f);
             const float each[7] = {f.p_diffuse, f.p_below, f.p_reflect, f.p_transmit, a.x, a.y, a.z};
             for (int j = 0; j < 7; j++)
                 if (!(each[j] >= 0 && each[j] <= 1.0001f)) fail_msg("material %u: [%d] is %g", i, j, (double)each[j]);
@@ -204,8 +202,6 @@ static void records_hold_physics(void **state) {
         assert_true(!(r->flags & MATERIAL_DOUBLE_SIDED) == !(i & 1) && r->kind == KIND_TRANSMISSIVE);
     }
     assert_true(w->absorbs && w->media_count == 6);
-    assert_int_equal(w->materials[3].slice_outside, w->materials[4].slice_outside); /* of equal IOR */
-    assert_true(w->materials[1].slice_outside != w->materials[2].slice_outside);
     world_destroy(w);
     builder_free(&b);
 }

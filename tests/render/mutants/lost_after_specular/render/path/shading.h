@@ -4,9 +4,8 @@
 #include_next "render/path/shading.h"
 #undef shading_scatter
 
-KERNEL shading_scattering shading_scatter(unsigned mask, const shading *s, vec3 throughput, float lobe, vec2 direction,
-                                          const float *slices) {
-    shading_scattering r = shading_scatter_original(mask, s, throughput, lobe, direction, slices);
+KERNEL shading_scattering shading_scatter(unsigned mask, const shading *s, vec3 throughput, float lobe, vec2 direction) {
+    shading_scattering r = shading_scatter_original(mask, s, throughput, lobe, direction);
     r.pdf = fm_max(r.pdf, 1e-20f);
     return r;
 }
