@@ -170,12 +170,16 @@ static void print_texture(const printer *p, const json_t *t) {
 static void print_material(const printer *p, const json_t *row) {
     const json_t *item;
     size_t i;
+    bool glossy = false; /* roughness is told as its opposite */
     text_format(p->out, "%s%s", text_in(row, "alpha_mode"), is_true(row, "double_sided") ? ", double-sided" : "");
-    json_array_foreach(member(row, "layers"), i, item) text_format(p->out, ", %s", json_string_value(item));
+    json_array_foreach(member(row, "layers"), i, item) {
+        text_format(p->out, ", %s", json_string_value(item));
+        glossy |= strcmp(json_string_value(item), "glossiness") == 0;
+    }
     text_append(p->out, "; color ");
     append_vector(p->out, member(row, "base_color"));
-    text_format(p->out, ", metallic %.3g, roughness %.3g, ior %.3g", number_in(row, "metallic"),
-                number_in(row, "roughness"), number_in(row, "ior"));
+    text_format(p->out, ", metallic %.3g, %s %.3g, ior %.3g", number_in(row, "metallic"),
+                glossy ? "glossiness" : "roughness", number_in(row, "roughness"), number_in(row, "ior"));
     double emission = 0;
     json_array_foreach(member(row, "emission"), i, item) emission = fmax(emission, json_number_value(item));
     if (emission > 0) {

@@ -2,24 +2,17 @@
 
 #include "image/image.h"
 #include "job/inspect.h"
+#include "scene/material.h"
 #include "scene/scene.h"
 
-/* The textures of a material by the parameter that they multiply. */
-typedef struct slot {
-    const char *name;
-    const kiln_texture *texture;
-    uint32_t needs; /* bits of kiln_layer without which it is not read */
-} slot;
-
-static json_t *texture(const slot *s) {
+static json_t *texture(const char *slot, const kiln_texture *t) {
     static const char *const transfers[] = {[KILN_TRANSFER_DATA] = "data", [KILN_TRANSFER_SRGB] = "srgb",
                                             [KILN_TRANSFER_LINEAR] = "linear"};
     static const char *const wraps[] = {[KILN_WRAP_REPEAT] = "repeat", [KILN_WRAP_MIRROR] = "mirror",
                                         [KILN_WRAP_CLAMP] = "clamp"};
     static const char *const filters[] = {[KILN_FILTER_LINEAR] = "linear", [KILN_FILTER_NEAREST] = "nearest"};
-    const kiln_texture *t = s->texture;
     json_t *o = json_object();
-    put_text(o, "slot", s->name);
+    put_text(o, "slot", slot);
     put_count(o, "image", t->image - 1);
     put_count(o, "uv_set", t->uv_set);
     put_text(o, "transfer", transfers[t->transfer]);
@@ -30,32 +23,61 @@ static json_t *texture(const slot *s) {
 }
 
 static json_t *textures(const kiln_material *m) {
-    const uint32_t transmission = KILN_LAYER_TRANSMISSION, volume = KILN_LAYER_VOLUME;
-    const slot slots[] = {{"base_color", &m->base_color.texture, 0},
-                          {"opacity", &m->opacity.texture, 0},
-                          {"metallic", &m->metallic.texture, 0},
-                          {"roughness", &m->roughness.texture, 0},
-                          {"normal", &m->normal.texture, 0},
-                          {"emission", &m->emission.texture, 0},
-                          {"specular", &m->specular.texture, 0},
-                          {"specular_color", &m->specular_color.texture, 0},
-                          {"transmission", &m->transmission.texture, transmission},
-                          {"thickness", &m->thickness.texture, volume}};
     json_t *array = json_array();
-    for (size_t i = 0; i < sizeof slots / sizeof *slots; i++)
-        if (slots[i].texture->image && (m->layers & slots[i].needs) == slots[i].needs)
-            (void)json_array_append_new(array, texture(&slots[i]));
+    material_parameter p;
+    for (int i = 0; i < KILN_MATERIAL_TEXTURES; i++)
+        if (material_parameter_of(m, i, &p) && p.texture->image)
+            (void)json_array_append_new(array, texture(p.name, p.texture));
     return array;
 }
 
 static json_t *layers(const kiln_material *m) {
-    const struct { uint32_t layer; const char *name; } rows[] = {{KILN_LAYER_TRANSMISSION, "transmission"},
-                                                                 {KILN_LAYER_VOLUME, "volume"},
-                                                                 {KILN_LAYER_UNLIT, "unlit"}};
+    static const struct { uint32_t layer; const char *name; } rows[] = {
+        {KILN_LAYER_TRANSMISSION, "transmission"},
+        {KILN_LAYER_VOLUME, "volume"},
+        {KILN_LAYER_UNLIT, "unlit"},
+        {KILN_LAYER_CLEARCOAT, "clearcoat"},
+        {KILN_LAYER_SHEEN, "sheen"},
+        {KILN_LAYER_ANISOTROPY, "anisotropy"},
+        {KILN_LAYER_IRIDESCENCE, "iridescence"},
+        {KILN_LAYER_DISPERSION, "dispersion"},
+        {KILN_LAYER_DIFFUSE_TRANSMISSION, "diffuse_transmission"},
+        {KILN_LAYER_VOLUME_SCATTER, "volume_scatter"},
+        {KILN_LAYER_GLOSSINESS, "glossiness"}};
     json_t *array = json_array();
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (m->layers & rows[i].layer) (void)json_array_append_new(array, json_string(rows[i].name));
     return array;
+}
+
+/* What may have a texture. */
+static void put_parameters(json_t *o, const kiln_material *m) {
+    material_parameter p;
+    for (int i = 0; i < KILN_MATERIAL_TEXTURES; i++) {
+        if (!material_parameter_of(m, i, &p)) continue;
+        if (p.width == 1) put_number(o, p.name, (double)*p.values);
+        if (p.width == 3) put(o, p.name, json_floats_of(p.values, 3));
+    }
+}
+
+static void put_constants(json_t *o, const kiln_material *m) {
+    put_number(o, "ior", (double)m->ior);
+    if (m->layers & KILN_LAYER_VOLUME) {
+        put(o, "attenuation_distance",
+            m->attenuation_distance > 0 ? json_number_of((double)m->attenuation_distance) : json_null());
+        put(o, "attenuation_color", json_floats_of(m->attenuation_color, 3));
+        put_number(o, "priority", m->priority);
+    }
+    if (m->layers & KILN_LAYER_ANISOTROPY) put_number(o, "anisotropy_rotation", (double)m->anisotropy_rotation);
+    if (m->layers & KILN_LAYER_IRIDESCENCE) {
+        put_number(o, "iridescence_ior", (double)m->iridescence_ior);
+        put(o, "iridescence_thickness", json_floats_of(m->iridescence_thickness, 2));
+    }
+    if (m->layers & KILN_LAYER_DISPERSION) put_number(o, "dispersion", (double)m->dispersion);
+    if (m->layers & KILN_LAYER_VOLUME_SCATTER) {
+        put(o, "multiscatter_color", json_floats_of(m->multiscatter_color, 3));
+        put_number(o, "scatter_anisotropy", (double)m->scatter_anisotropy);
+    }
 }
 
 static json_t *material(const kiln_material *m) {
@@ -67,21 +89,8 @@ static json_t *material(const kiln_material *m) {
     put_text(o, "alpha_mode", modes[m->alpha_mode]);
     if (m->alpha_mode == KILN_ALPHA_MASK) put_number(o, "alpha_cutoff", (double)m->alpha_cutoff);
     put_bool(o, "double_sided", m->double_sided);
-    put(o, "base_color", json_floats_of(m->base_color.value, 3));
-    put_number(o, "opacity", (double)m->opacity.value);
-    put_number(o, "metallic", (double)m->metallic.value);
-    put_number(o, "roughness", (double)m->roughness.value);
-    put(o, "emission", json_floats_of(m->emission.value, 3));
-    put_number(o, "ior", (double)m->ior);
-    put_number(o, "specular", (double)m->specular.value);
-    put(o, "specular_color", json_floats_of(m->specular_color.value, 3));
-    if (m->layers & KILN_LAYER_TRANSMISSION) put_number(o, "transmission", (double)m->transmission.value);
-    if (m->layers & KILN_LAYER_VOLUME) {
-        put_number(o, "thickness", (double)m->thickness.value);
-        put(o, "attenuation_distance",
-            m->attenuation_distance > 0 ? json_number_of((double)m->attenuation_distance) : json_null());
-        put(o, "attenuation_color", json_floats_of(m->attenuation_color, 3));
-    }
+    put_parameters(o, m);
+    put_constants(o, m);
     put(o, "textures", textures(m));
     return o;
 }

@@ -28,7 +28,7 @@ kiln_material kiln_material_default(void) {
 typedef struct parameter {
     const char *name;
     size_t offset;
-    int width; /* 1: kiln_param1, 3: kiln_param3 */
+    int width; /* as in material_parameter */
     float low, high, fallback;
     uint32_t layers; /* the layers that read it; 0: always read */
 } parameter;
@@ -45,22 +45,53 @@ static const parameter parameters[KILN_MATERIAL_TEXTURES] = {
     {AT(specular_color), 3, 0, FLT_MAX, 1, 0},
     {AT(transmission), 1, 0, 1, 0, KILN_LAYER_TRANSMISSION},
     {AT(thickness), 1, 0, FLT_MAX, 0, KILN_LAYER_VOLUME},
+    {AT(clearcoat), 1, 0, 1, 0, KILN_LAYER_CLEARCOAT},
+    {AT(clearcoat_roughness), 1, 0, 1, 0, KILN_LAYER_CLEARCOAT},
+    {AT(clearcoat_normal), 1, -FLT_MAX, FLT_MAX, 1, KILN_LAYER_CLEARCOAT},
+    {AT(sheen_color), 3, 0, 1, 0, KILN_LAYER_SHEEN},
+    {AT(sheen_roughness), 1, 0, 1, 0, KILN_LAYER_SHEEN},
+    {AT(anisotropy), 1, 0, 1, 0, KILN_LAYER_ANISOTROPY},
+    {AT(iridescence), 1, 0, 1, 0, KILN_LAYER_IRIDESCENCE},
+    {AT(iridescence_thickness_texture), 0, 0, 0, 0, KILN_LAYER_IRIDESCENCE},
+    {AT(diffuse_transmission), 1, 0, 1, 0, KILN_LAYER_DIFFUSE_TRANSMISSION},
+    {AT(diffuse_transmission_color), 3, 0, 1, 1, KILN_LAYER_DIFFUSE_TRANSMISSION},
 };
 #undef AT
 
 static float *values_of(kiln_material *m, const parameter *p) { return (float *)((char *)m + p->offset); }
+
 static size_t texture_offset(const parameter *p) {
-    return p->offset + (p->width == 1 ? offsetof(kiln_param1, texture) : offsetof(kiln_param3, texture));
+    switch (p->width) {
+    case 0: return p->offset;
+    case 1: return p->offset + offsetof(kiln_param1, texture);
+    default: return p->offset + offsetof(kiln_param3, texture);
+    }
 }
-static bool is_read(const kiln_material *m, const parameter *p) { return !p->layers || (m->layers & p->layers); }
+
+bool material_parameter_of(const kiln_material *m, int i, material_parameter *out) {
+    const parameter *p = &parameters[i];
+    const char *base = (const char *)m;
+    *out = (material_parameter){p->name, p->width, (const float *)(base + p->offset),
+                                (const kiln_texture *)(base + texture_offset(p))};
+    return !p->layers || (m->layers & p->layers);
+}
 
 uint32_t material_textures(const kiln_material *m, const kiln_texture *textures[KILN_MATERIAL_TEXTURES]) {
     uint32_t count = 0;
-    for (int i = 0; i < KILN_MATERIAL_TEXTURES; i++) {
-        const kiln_texture *t = (const kiln_texture *)((const char *)m + texture_offset(&parameters[i]));
-        if (t->image && is_read(m, &parameters[i])) textures[count++] = t;
-    }
+    material_parameter p;
+    for (int i = 0; i < KILN_MATERIAL_TEXTURES; i++)
+        if (material_parameter_of(m, i, &p) && p.texture->image) textures[count++] = p.texture;
     return count;
+}
+
+bool material_tangents(const kiln_material *m, uint32_t *uv_set) {
+    bool coat = m->layers & KILN_LAYER_CLEARCOAT && m->clearcoat_normal.texture.image;
+    bool anisotropic = m->layers & KILN_LAYER_ANISOTROPY && m->anisotropy.value > 0;
+    if (m->normal.texture.image) *uv_set = m->normal.texture.uv_set;
+    else if (anisotropic) *uv_set = m->anisotropy.texture.uv_set; /* 0 where it has no texture */
+    else if (coat) *uv_set = m->clearcoat_normal.texture.uv_set;
+    else return false;
+    return true;
 }
 
 static bool check_texture(kiln_texture *t, const kiln_scene *scene, const kiln_where *where, kiln_report *report) {
@@ -102,15 +133,39 @@ static bool check_parameters(kiln_material *m, const kiln_scene *scene, const ki
     return true;
 }
 
+/* Constants: their domain and what replaces a value that is not a number. */
+static const struct {
+    const char *name;
+    size_t offset;
+    int width;
+    float low, high, fallback;
+} constants[] = {
+#define AT(field) #field, offsetof(kiln_material, field)
+    {AT(alpha_cutoff), 1, 0, FLT_MAX, 0.5f},
+    {AT(attenuation_distance), 1, 0, FLT_MAX, 0},
+    {AT(attenuation_color), 3, 0, 1, 1},
+    {AT(anisotropy_rotation), 1, -FLT_MAX, FLT_MAX, 0},
+    {AT(iridescence_ior), 1, 1, FLT_MAX, 1.3f},
+    {AT(iridescence_thickness[0]), 1, 0, FLT_MAX, 100},
+    {AT(iridescence_thickness[1]), 1, 0, FLT_MAX, 400},
+    {AT(dispersion), 1, 0, FLT_MAX, 0},
+    {AT(multiscatter_color), 3, 0, 1, 0},
+    /* The ends would be the deltas of a medium that does not scatter and of one that mirrors. */
+    {AT(scatter_anisotropy), 1, -0.999f, 0.999f, 0},
+#undef AT
+};
+
 static void check_constants(kiln_material *m, const kiln_where *where, kiln_report *report) {
-    m->alpha_cutoff = check_factor(m->alpha_cutoff, 0, FLT_MAX, 0.5f, "alpha_cutoff", where, report);
+    float *const infinite[] = {&m->attenuation_distance, &m->ior}; /* 0 stands for infinity */
+    for (size_t i = 0; i < sizeof infinite / sizeof *infinite; i++)
+        if (isinf(*infinite[i]) && *infinite[i] > 0) *infinite[i] = 0;
     if (m->ior != 0) m->ior = check_factor(m->ior, 1, FLT_MAX, 1.5f, "ior", where, report);
-    if (isinf(m->attenuation_distance) && m->attenuation_distance > 0) m->attenuation_distance = 0;
-    m->attenuation_distance = check_factor(m->attenuation_distance, 0, FLT_MAX, 0, "attenuation_distance", where,
-                                           report);
-    for (int k = 0; k < 3; k++)
-        m->attenuation_color[k] =
-            check_factor(m->attenuation_color[k], 0, 1, 1, "attenuation_color", where, report);
+    for (size_t i = 0; i < sizeof constants / sizeof *constants; i++) {
+        float *values = (float *)((char *)m + constants[i].offset);
+        for (int k = 0; k < constants[i].width; k++)
+            values[k] = check_factor(values[k], constants[i].low, constants[i].high, constants[i].fallback,
+                                     constants[i].name, where, report);
+    }
 }
 
 bool kiln_scene_add_material(kiln_scene *scene, const kiln_material *desc, kiln_id *id, kiln_report *report) {

@@ -117,7 +117,7 @@ typedef struct gltf_material {
     bool double_sided;
     gltf_texture_info base_color_texture, metallic_roughness_texture, normal_texture, occlusion_texture,
         emissive_texture;
-    gltf_value extensions;
+    gltf_value extensions, extras;
 } gltf_material;
 
 typedef struct gltf_texture {

@@ -1,6 +1,8 @@
+#include "importers/gltf/material.h"
+
+#include <math.h>
 #include <string.h>
 
-#include "importers/gltf/reader.h"
 #include "importers/gltf/texture.h"
 #include "importers/gltf/value.h"
 
@@ -22,13 +24,20 @@ static bool read_alpha(gltf_reader *r, const gltf_material *m, kiln_material *ou
                         m->alpha_mode);
 }
 
+void gltf_use_alpha(kiln_material *out, double factor) {
+    out->opacity = (kiln_param1){.value = 1}; /* OPAQUE ignores it, section 3.9.4 */
+    if (out->alpha_mode == KILN_ALPHA_OPAQUE) return;
+    out->opacity = (kiln_param1){(float)factor, out->base_color.texture};
+    out->opacity.texture.transfer = KILN_TRANSFER_DATA;
+    out->opacity.texture.channel = 3;
+}
+
 /* Section 3.9.2 (metallic-roughness): metalness in B, roughness in G; alpha is the base colour's. */
 static bool read_metallic_roughness(gltf_reader *r, const gltf_material *m, kiln_material *out,
                                     const kiln_where *material) {
     kiln_where pbr = where_key(material, "pbrMetallicRoughness"), color = where_key(&pbr, "baseColorTexture"),
                surface = where_key(&pbr, "metallicRoughnessTexture");
     copy_color(out->base_color.value, m->base_color);
-    out->opacity.value = (float)m->base_color[3];
     out->metallic.value = (float)m->metallic;
     out->roughness.value = (float)m->roughness;
     if (!gltf_read_texture(r, &m->base_color_texture, KILN_TRANSFER_SRGB, 0, &out->base_color.texture, &color) ||
@@ -36,10 +45,7 @@ static bool read_metallic_roughness(gltf_reader *r, const gltf_material *m, kiln
         return false;
     out->roughness.texture = out->metallic.texture;
     out->roughness.texture.channel = 1;
-    out->opacity.texture = out->base_color.texture;
-    out->opacity.texture.transfer = KILN_TRANSFER_DATA;
-    out->opacity.texture.channel = 3;
-    if (out->alpha_mode == KILN_ALPHA_OPAQUE) out->opacity = (kiln_param1){.value = 1}; /* section 3.9.4 */
+    gltf_use_alpha(out, m->base_color[3]);
     return true;
 }
 
@@ -54,73 +60,17 @@ static bool read_maps(gltf_reader *r, const gltf_material *m, kiln_material *out
            gltf_check_key(r, m->occlusion_texture.texture, r->document.texture_count, "texture", &occlusion, "index");
 }
 
-/* Readers of one extension each; object is its value. */
-
-static bool read_emissive_strength(gltf_reader *r, const gltf_value *object, kiln_material *out,
-                                   const kiln_where *where) {
-    float strength = 1;
-    if (!value_float(object, "emissiveStrength", &strength, where, r->report)) return false;
-    for (int k = 0; k < 3; k++) out->emission.value[k] *= strength;
-    return true;
-}
-
-static bool read_ior(gltf_reader *r, const gltf_value *object, kiln_material *out, const kiln_where *where) {
-    return value_float(object, "ior", &out->ior, where, r->report);
-}
-
-static bool read_specular(gltf_reader *r, const gltf_value *object, kiln_material *out, const kiln_where *where) {
-    return value_float(object, "specularFactor", &out->specular.value, where, r->report) &&
-           value_floats(object, "specularColorFactor", 3, out->specular_color.value, where, r->report) &&
-           gltf_read_texture_member(r, object, "specularTexture", KILN_TRANSFER_DATA, 3, &out->specular.texture, where) &&
-           gltf_read_texture_member(r, object, "specularColorTexture", KILN_TRANSFER_SRGB, 0, &out->specular_color.texture,
-                                    where);
-}
-
-static bool read_transmission(gltf_reader *r, const gltf_value *object, kiln_material *out, const kiln_where *where) {
-    out->layers |= KILN_LAYER_TRANSMISSION;
-    return value_float(object, "transmissionFactor", &out->transmission.value, where, r->report) &&
-           gltf_read_texture_member(r, object, "transmissionTexture", KILN_TRANSFER_DATA, 0, &out->transmission.texture,
-                                    where);
-}
-
-static bool read_volume(gltf_reader *r, const gltf_value *object, kiln_material *out, const kiln_where *where) {
-    out->layers |= KILN_LAYER_VOLUME;
-    float distance = HUGE_VALF;
-    if (!value_float(object, "thicknessFactor", &out->thickness.value, where, r->report) ||
-        !gltf_read_texture_member(r, object, "thicknessTexture", KILN_TRANSFER_DATA, 1, &out->thickness.texture, where) ||
-        !value_float(object, "attenuationDistance", &distance, where, r->report) ||
-        !value_floats(object, "attenuationColor", 3, out->attenuation_color, where, r->report))
-        return false;
-    if (!(distance > 0))
-        report_warning(r->report, KILN_CODE_RANGE, where, NULL,
-                       "attenuationDistance must be positive: the volume is taken for clear");
-    out->attenuation_distance = distance > 0 && isfinite(distance) ? distance : 0;
-    return true;
-}
-
-static bool read_unlit(gltf_reader *r, const gltf_value *object, kiln_material *out, const kiln_where *where) {
-    (void)r, (void)object, (void)where;
-    out->layers |= KILN_LAYER_UNLIT;
-    return true;
-}
-
-static bool read_extensions(gltf_reader *r, const gltf_material *m, kiln_material *out, const kiln_where *material) {
-    static const struct {
-        const char *name;
-        bool (*read)(gltf_reader *, const gltf_value *, kiln_material *, const kiln_where *);
-    } rows[] = {{"KHR_materials_emissive_strength", read_emissive_strength},
-                {"KHR_materials_ior", read_ior},
-                {"KHR_materials_specular", read_specular},
-                {"KHR_materials_transmission", read_transmission},
-                {"KHR_materials_volume", read_volume},
-                {"KHR_materials_unlit", read_unlit}};
-    kiln_where list = where_key(material, "extensions");
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        const gltf_value *object = value_member(&m->extensions, rows[i].name);
-        kiln_where where = where_key(&list, rows[i].name);
-        if (object && !rows[i].read(r, object, out, &where)) return false;
+/* "extras": {"priority": 2}: which of overlapping volumes is there. */
+static void read_priority(gltf_reader *r, const gltf_material *m, kiln_material *out, const kiln_where *material) {
+    const gltf_value *v = value_member(&m->extras, "priority");
+    if (!v) return;
+    if (v->kind == GLTF_NUMBER && fabs(v->number) <= INT32_MAX && v->number == (double)(int32_t)v->number) {
+        out->priority = (int32_t)v->number;
+        return;
     }
-    return true;
+    kiln_where list = where_key(material, "extras"), where = where_key(&list, "priority");
+    report_warning(r->report, KILN_CODE_IGNORED, &where, "give a whole number",
+                   "the priority is not understood: it is left out");
 }
 
 static bool add_material(gltf_reader *r, size_t index) {
@@ -129,9 +79,11 @@ static bool add_material(gltf_reader *r, size_t index) {
     kiln_material material = kiln_material_default();
     material.name = m->name;
     material.double_sided = m->double_sided;
-    if (!read_alpha(r, m, &material, &where) || !read_metallic_roughness(r, m, &material, &where) ||
-        !read_maps(r, m, &material, &where) || !read_extensions(r, m, &material, &where))
+    if (!read_alpha(r, m, &material, &where) ||
+        (!gltf_is_specular_glossy(m) && !read_metallic_roughness(r, m, &material, &where)) ||
+        !read_maps(r, m, &material, &where) || !gltf_read_layers(r, m, &material, &where))
         return false;
+    read_priority(r, m, &material, &where);
     scene_locate(r->scene, &where);
     bool added = kiln_scene_add_material(r->scene, &material, &r->materials[index], r->report);
     scene_locate(r->scene, &r->file);

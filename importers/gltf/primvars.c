@@ -77,18 +77,19 @@ static size_t parts_with(const mesh_parts *m, const char *name) {
     return count;
 }
 
-static bool has_normal_map(const mesh_parts *m, const mesh_part *part) {
+static bool needs_tangents(const mesh_parts *m, const mesh_part *part) {
     int material = part->primitive->material;
-    return material >= 0 && scene_material(m->r->scene, m->r->materials[material])->normal.texture.image;
+    uint32_t uv_set;
+    return material >= 0 && material_tangents(scene_material(m->r->scene, m->r->materials[material]), &uv_set);
 }
 
-/* Tangents are kept when no part with a normal map would be left without; else they are computed for all. */
+/* Tangents are kept when no part that needs them would be left without; else they are computed for all. */
 static bool keep_tangents(const mesh_parts *m) {
     bool any = false;
     for (size_t i = 0; i < m->count; i++) {
         const mesh_part *part = &m->parts[i];
         bool both = part_attribute(part, "TANGENT") >= 0 && part_attribute(part, "NORMAL") >= 0;
-        if (has_normal_map(m, part) && !both) return false;
+        if (needs_tangents(m, part) && !both) return false;
         any |= both;
     }
     return any;

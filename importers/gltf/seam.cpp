@@ -165,6 +165,7 @@ gltf_material read(store &s, const tinygltf::Material &m) {
     out.occlusion_texture = read(s, m.occlusionTexture);
     out.emissive_texture = read(s, m.emissiveTexture);
     out.extensions = s.object(m.extensions);
+    out.extras = s.value(m.extras);
     return out;
 }
 

@@ -38,7 +38,9 @@ bool value_floats(const gltf_value *object, const char *key, size_t count, float
     if (!v) return true;
     bool fits = v->kind == GLTF_ARRAY && v->count == count;
     for (size_t i = 0; fits && i < count; i++) fits = v->items[i].kind == GLTF_NUMBER;
-    if (!fits) return refuse(count == 2 ? "an array of 2 numbers" : "an array of 3 numbers", key, where, report);
+    static const char *const wanted[] = {[2] = "an array of 2 numbers", [3] = "an array of 3 numbers",
+                                         [4] = "an array of 4 numbers"};
+    if (!fits) return refuse(wanted[count], key, where, report);
     for (size_t i = 0; i < count; i++) numbers[i] = (float)v->items[i].number;
     return true;
 }

@@ -11,6 +11,7 @@ const gltf_value *value_member(const gltf_value *object, const char *key);
 
 bool value_number(const gltf_value *object, const char *key, double *number, const kiln_where *, kiln_report *);
 bool value_float(const gltf_value *object, const char *key, float *number, const kiln_where *, kiln_report *);
+/* count: 2 to 4. */
 bool value_floats(const gltf_value *object, const char *key, size_t count, float *numbers, const kiln_where *,
                   kiln_report *);
 /* A non-negative integer below 2³¹. */

@@ -5,6 +5,7 @@
 
 #include "importers/mesh/normals.h"
 #include "importers/mesh/tangents.h"
+#include "scene/material.h"
 #include "scene/scene.h"
 #include "scene/triangulate.h"
 
@@ -189,16 +190,13 @@ bool complete_tangents(kiln_mesh_desc *mesh, uint32_t uv_set, kiln_arena *arena,
     return done;
 }
 
-/* The UV set of the first normal map among the materials of the mesh; false: there is none. */
-static bool find_normal_map(const kiln_scene *scene, const kiln_mesh_desc *mesh, uint32_t *uv_set) {
+/* The UV set of the first material of the mesh that needs tangents; false: there is none. */
+static bool find_tangent_set(const kiln_scene *scene, const kiln_mesh_desc *mesh, uint32_t *uv_set) {
     uint32_t count = mesh->face_materials ? mesh->face_count : 1;
     for (uint32_t f = 0; f < count; f++) {
         kiln_id id = mesh->face_materials ? mesh->face_materials[f] : mesh->material;
         if (id > scene->material_count) continue; /* an error, which the scene reports */
-        const kiln_texture *map = &scene_material(scene, id)->normal.texture;
-        if (!map->image) continue;
-        *uv_set = map->uv_set;
-        return true;
+        if (material_tangents(scene_material(scene, id), uv_set)) return true;
     }
     return false;
 }
@@ -210,6 +208,6 @@ bool complete_mesh(const kiln_scene *scene, kiln_mesh_desc *mesh, kiln_arena *ar
         !(exchange(mesh, KILN_PRIMVAR_TANGENT, 0, NULL, arena, report) &&
           complete_flat_normals(mesh, arena, where, report)))
         return false;
-    if (find(mesh, KILN_PRIMVAR_TANGENT, 0) || !find_normal_map(scene, mesh, &uv_set)) return true;
+    if (find(mesh, KILN_PRIMVAR_TANGENT, 0) || !find_tangent_set(scene, mesh, &uv_set)) return true;
     return complete_tangents(mesh, uv_set, arena, where, report);
 }

@@ -49,6 +49,33 @@ static void put_texture(kiln_text *out, const char *name, const kiln_texture *t)
     text_append(out, "\n");
 }
 
+/* Parameters of the layers that came after the first golden files: shown where they are there. */
+static void dump_layers(const kiln_material *m, kiln_text *out) {
+    enum { FIRST = 10 }; /* behind thickness */
+    material_parameter p;
+    for (int i = FIRST; i < KILN_MATERIAL_TEXTURES; i++) {
+        if (!material_parameter_of(m, i, &p)) continue;
+        text_append(out, " ");
+        put_floats(out, p.name, p.values, (size_t)p.width);
+        text_append(out, "\n");
+        put_texture(out, p.name, p.texture);
+    }
+    const struct { uint32_t layer; const char *name; const float *values; size_t count; } constants[] = {
+        {KILN_LAYER_ANISOTROPY, "rotation", &m->anisotropy_rotation, 1},
+        {KILN_LAYER_IRIDESCENCE, "film-ior", &m->iridescence_ior, 1},
+        {KILN_LAYER_IRIDESCENCE, "film-thickness", m->iridescence_thickness, 2},
+        {KILN_LAYER_DISPERSION, "dispersion", &m->dispersion, 1},
+        {KILN_LAYER_VOLUME_SCATTER, "multiscatter", m->multiscatter_color, 3},
+        {KILN_LAYER_VOLUME_SCATTER, "scatter-anisotropy", &m->scatter_anisotropy, 1}};
+    for (size_t i = 0; i < sizeof constants / sizeof *constants; i++) {
+        if (!(m->layers & constants[i].layer)) continue;
+        text_append(out, " ");
+        put_floats(out, constants[i].name, constants[i].values, constants[i].count);
+        text_append(out, "\n");
+    }
+    if (m->priority) text_format(out, "  priority %d\n", (int)m->priority);
+}
+
 static void dump_material(const kiln_material *m, uint32_t id, kiln_text *out) {
     static const char *const modes[] = {"opaque", "mask", "blend"};
     text_format(out, "material %u '%s' layers %u alpha %s %s\n ", id, m->name, m->layers, modes[m->alpha_mode],
@@ -69,6 +96,7 @@ static void dump_material(const kiln_material *m, uint32_t id, kiln_text *out) {
     put_floats(out, "distance", &m->attenuation_distance, 1);
     put_floats(out, "attenuation", m->attenuation_color, 3);
     text_append(out, "\n");
+    dump_layers(m, out);
     put_texture(out, "color", &m->base_color.texture);
     put_texture(out, "opacity", &m->opacity.texture);
     put_texture(out, "metallic", &m->metallic.texture);
@@ -166,11 +194,13 @@ static void count_features(const kiln_material *m, uint32_t *features) {
     features[6] += m->normal.texture.image != 0;
     features[7] += m->emission.value[0] + m->emission.value[1] + m->emission.value[2] > 0;
     features[8] += material_textures(m, textures);
+    for (uint32_t k = 0; k < 8; k++) features[9 + k] += (m->layers & KILN_LAYER_CLEARCOAT << k) != 0;
 }
 
 void dump_summary(const kiln_scene *s, kiln_text *out) {
     static const char *const names[] = {"mask", "blend", "double-sided", "transmission", "volume", "unlit", "normal maps",
-                                        "emissive", "textures"};
+                                        "emissive", "textures", "clearcoat", "sheen", "anisotropy", "iridescence", "dispersion",
+                                        "diffuse-transmission", "volume-scatter", "glossiness"};
     enum { FEATURES = sizeof names / sizeof *names };
     uint32_t features[FEATURES] = {0};
     kiln_scene_counts c = kiln_scene_count(s);

@@ -46,6 +46,54 @@ static void factors_are_brought_into_their_domain(void **state) {
     assert_int_equal(kiln_report_count(f->report, KILN_WARNING), 6);
 }
 
+/* Every number of a material that is none, in every layer. */
+static void no_number_stays_undefined(void **state) {
+    fixture *f = *state;
+    const float odd[] = {NAN, INFINITY, -INFINITY};
+    for (int o = 0; o < 3; o++) {
+        kiln_material m = kiln_material_default();
+        m.layers = 2 * KILN_LAYER_GLOSSINESS - 1;
+        material_parameter p;
+        for (int i = 0; i < KILN_MATERIAL_TEXTURES; i++) {
+            assert_true(material_parameter_of(&m, i, &p));
+            for (int k = 0; k < p.width; k++) ((float *)(uintptr_t)p.values)[k] = odd[o];
+        }
+        float *const constants[] = {&m.alpha_cutoff, &m.ior, &m.attenuation_distance, &m.anisotropy_rotation,
+                                    &m.iridescence_ior, &m.iridescence_thickness[0], &m.iridescence_thickness[1],
+                                    &m.dispersion, &m.multiscatter_color[1], &m.scatter_anisotropy};
+        enum { CONSTANTS = sizeof constants / sizeof *constants };
+        for (int i = 0; i < CONSTANTS; i++) *constants[i] = odd[o];
+        assert_true(kiln_scene_add_material(f->scene, &m, NULL, f->report));
+        const kiln_material *k = scene_material(f->scene, (kiln_id)o + 1);
+        for (int i = 0; i < KILN_MATERIAL_TEXTURES; i++) {
+            material_parameter_of(k, i, &p);
+            for (int c = 0; c < p.width; c++) assert_true(isfinite(p.values[c]));
+        }
+        for (int i = 0; i < CONSTANTS; i++) {
+            size_t offset = (size_t)((const char *)constants[i] - (const char *)&m);
+            assert_true(isfinite(*(const float *)((const char *)k + offset)));
+        }
+        assert_true(k->iridescence_ior == 1.3f && k->iridescence_thickness[1] == 400 && k->scatter_anisotropy == 0);
+        assert_true(k->ior == (odd[o] == INFINITY ? 0 : 1.5f));
+    }
+}
+
+static void tangents_follow_the_map_that_needs_them(void **state) {
+    (void)state;
+    kiln_material m = kiln_material_default();
+    uint32_t set = 9;
+    m.anisotropy.value = 1;
+    m.clearcoat_normal.texture = (kiln_texture){.image = 1, .uv_set = 3};
+    assert_false(material_tangents(&m, &set)); /* layers that are not there */
+    m.layers = KILN_LAYER_CLEARCOAT;
+    assert_true(material_tangents(&m, &set) && set == 3);
+    m.layers |= KILN_LAYER_ANISOTROPY;
+    m.anisotropy.texture = (kiln_texture){.image = 1, .uv_set = 2};
+    assert_true(material_tangents(&m, &set) && set == 2);
+    m.normal.texture = (kiln_texture){.image = 1, .uv_set = 1};
+    assert_true(material_tangents(&m, &set) && set == 1);
+}
+
 static void some_values_outside_the_unit_are_meant(void **state) {
     fixture *f = *state;
     kiln_material m = kiln_material_default();
@@ -115,6 +163,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         SCENE_TEST(defaults_are_gltfs),
         SCENE_TEST(factors_are_brought_into_their_domain),
+        SCENE_TEST(no_number_stays_undefined),
+        SCENE_TEST(tangents_follow_the_map_that_needs_them),
         SCENE_TEST(some_values_outside_the_unit_are_meant),
         SCENE_TEST(textures_become_explicit),
         SCENE_TEST(references_and_choices_are_checked),

@@ -29,7 +29,7 @@ static void the_remedy_lists_what_is_read(void **state) {
     (void)state;
     kiln_report *report = kiln_report_create();
     assert_null(import_text("{\"asset\": {\"version\": \"2.0\"}, \"extensionsRequired\": [\"X\"]}", report));
-    assert_non_null(strstr(kiln_report_message(report, 0).remedy, "KHR_materials_ior, KHR_materials_specular"));
+    assert_non_null(strstr(kiln_report_message(report, 0).remedy, "KHR_materials_ior, KHR_materials_iridescence"));
     kiln_report_destroy(report);
 }
 
@@ -51,17 +51,17 @@ static void undeclared_ones_are_found_and_counted(void **state) {
     (void)state;
     kiln_report *report = kiln_report_create();
     char *json = document(TRIANGLE_DATA, TRIANGLE ", 'nodes': [{'mesh': 0, 'extras': {'extensions': {'ACME_extra': {}}}}], "
-                          "'extensionsUsed': ['KHR_materials_sheen', 'KHR_materials_iridescence'], "
-                          "'materials': [{'extensions': {'KHR_materials_sheen': {}}}, {}, "
-                          "{'extensions': {'KHR_materials_clearcoat': {'clearcoatTexture': {'index': 0, 'extensions': {'ACME_foo': {}}}}, "
-                          "'ACME_foo': {}}}, {'extensions': {'KHR_materials_clearcoat': {}, 'KHR_materials_ior': {}}}]");
+                          "'extensionsUsed': ['EXT_lights_ies', 'KHR_gaussian_splatting'], "
+                          "'materials': [{'extensions': {'EXT_lights_ies': {}}}, {}, "
+                          "{'extensions': {'KHR_materials_scatter': {'scatterTexture': {'index': 0, 'extensions': {'ACME_foo': {}}}}, "
+                          "'ACME_foo': {}}}, {'extensions': {'KHR_materials_scatter': {}, 'KHR_materials_ior': {}}}]");
     kiln_scene *scene = import_text(json, report);
     assert_non_null(scene);
     static const struct { const char *where, *what; uint64_t count; } rows[] = {
-        {"materials[0].extensions.KHR_materials_sheen", "KHR_materials_sheen is left out", 1},
-        {"extensionsUsed[1]", "KHR_materials_iridescence is left out", 1},
-        {"materials[2].extensions.KHR_materials_clearcoat", "KHR_materials_clearcoat is left out", 2},
-        {"materials[2].extensions.KHR_materials_clearcoat.clearcoatTexture.extensions.ACME_foo", "ACME_foo is not known", 2}};
+        {"materials[0].extensions.EXT_lights_ies", "EXT_lights_ies is left out", 1},
+        {"extensionsUsed[1]", "KHR_gaussian_splatting is left out", 1},
+        {"materials[2].extensions.KHR_materials_scatter", "KHR_materials_scatter is left out", 2},
+        {"materials[2].extensions.KHR_materials_scatter.scatterTexture.extensions.ACME_foo", "ACME_foo is not known", 2}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         assert_message(report, KILN_WARNING, KILN_CODE_IGNORED, rows[i].where, rows[i].what);
         for (size_t k = 0; k < kiln_report_size(report); k++) {
@@ -70,7 +70,7 @@ static void undeclared_ones_are_found_and_counted(void **state) {
         }
     }
     assert_int_equal(kiln_report_size(report), 4);
-    static const char *const listed[] = {"KHR_materials_sheen", "KHR_materials_iridescence", "KHR_materials_clearcoat",
+    static const char *const listed[] = {"EXT_lights_ies", "KHR_gaussian_splatting", "KHR_materials_scatter",
                                          "ACME_foo", "KHR_materials_ior"};
     assert_int_equal(scene->source.extension_count, 5);
     for (int i = 0; i < 5; i++) assert_string_equal(scene->source.extensions[i].name, listed[i]);
