@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/hash.h"
+#include "render/path/medium.h"
 
 /* What a program cannot have meant; NaN is refused with the rest. */
 static const char *what_is_unknown(const kiln_render_options *o) {
@@ -69,5 +70,9 @@ bool context_make(const kiln_renderer *r, const kiln_render_options *o, const ki
                         .background_color = v3_load(o->background_color),
                         .aovs = d->aovs & (1u << KILN_AOV_ALBEDO | 1u << KILN_AOV_NORMAL | 1u << KILN_AOV_DEPTH)};
     pixel_filter_make(&c->filter, o->filter, o->filter_width);
-    return camera_make(r->world, view, d->width, d->height, &c->camera, report);
+    if (!camera_make(r->world, view, d->width, d->height, &c->camera, report)) return false;
+    c->media = camera_media(r->world, &c->camera);
+    float n = r->world->media[medium_top(c->media)].ior;
+    c->squeeze = n * n;
+    return true;
 }

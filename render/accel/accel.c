@@ -40,9 +40,9 @@ static void attach_triangles(accel *a, RTCScene scene, const world *w, const wor
     }
 }
 
-static RTCScene new_scene(accel *a) {
+static RTCScene new_scene(accel *a, const world *w) {
     RTCScene scene = rtcNewScene(a->device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | (w->media_count > 1 ? EMBREE_QUERY_FILTERS : RTC_SCENE_FLAG_NONE));
     /* HIGH falls back to MEDIUM with ROBUST without a word. */
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
     return scene;
@@ -83,11 +83,11 @@ static bool build(accel *a, world *w, uint32_t threads, const char *config, kiln
         return report_error(report, KILN_CODE_DEVICE, NULL, "check --embree-config",
                             "Embree cannot be started with the configuration '%s'", config ? config : "");
     rtcSetDeviceMemoryMonitorFunction(a->device, monitor, a);
-    a->scene = new_scene(a);
+    a->scene = new_scene(a, w);
     a->prototypes = array_alloc(w->prototype_count, sizeof(RTCScene));
     if (!a->prototypes) return report_no_memory(report, "building the acceleration structure");
     for (; a->prototype_count < w->prototype_count; a->prototype_count++) {
-        RTCScene scene = new_scene(a);
+        RTCScene scene = new_scene(a, w);
         a->prototypes[a->prototype_count] = scene;
         attach_triangles(a, scene, w, &w->prototypes[a->prototype_count]);
         rtcCommitScene(scene);
@@ -214,5 +214,38 @@ void accel_visible(const world *w, const ray_lanes *rays, uint32_t *visible, tra
             uint32_t i = rays->lanes ? rays->lanes[first + k] : first + k;
             visible[i] = !valid[k] ? RAY_REFUSED : packet.tfar[k] >= 0.0f ? RAY_REACHES : RAY_STOPPED;
         }
+    }
+}
+
+/* What a visit hands to its filter. */
+typedef struct visit_context {
+    coverage_context coverage;
+    ray_visitor *visitor;
+    void *user;
+} visit_context;
+
+/* Shows the hits, and accepts none: Embree goes on to the ray's end. */
+static void visit_filter(const struct RTCFilterFunctionNArguments *args) {
+    const visit_context *c = (const visit_context *)(const void *)args->context;
+    const uint32_t *ray = (const uint32_t *)(const void *)args->ray, *hit = (const uint32_t *)(const void *)args->hit;
+    const float *ray_f = (const float *)(const void *)args->ray, *hit_f = (const float *)(const void *)args->hit;
+    size_t n = args->N;
+    for (size_t k = 0; k < n; k++) {
+        if (args->valid[k] != -1) continue;
+        ray_crossing at = {.t = ray_f[RAY_T * n + k], .u = hit_f[HIT_U * n + k], .v = hit_f[HIT_V * n + k]};
+        at.triangle = filter_triangle(c->coverage.world, hit, n, k, &at.instance);
+        c->visitor(c->user, ray[RAY_ID * n + k], &at);
+        args->valid[k] = 0;
+    }
+}
+
+void accel_visit(const world *w, const ray_lanes *rays, ray_visitor *visitor, void *user, trace_counts *counts) {
+    visit_context context = {{.world = w, .coverage = &rays->coverage}, visitor, user};
+    embree_init_context(&context.coverage.embree);
+    for (uint32_t first = 0; first < rays->count; first += WIDTH) {
+        struct RTCRay16 packet;
+        _Alignas(64) int valid[WIDTH];
+        (void)load(rays, first, &packet, valid, counts);
+        embree_visit16(valid, w->accel->scene, &context.coverage.embree, visit_filter, &packet);
     }
 }

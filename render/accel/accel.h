@@ -45,6 +45,13 @@ typedef struct trace_counts { uint64_t rays, refused; } trace_counts;
 void accel_closest(const world *, const ray_lanes *, float *t, float *u, float *v, uint32_t *triangle,
                    uint32_t *instance, trace_counts *);
 
+/* A surface that a ray meets; triangle and instance as above. */
+typedef struct ray_crossing { uint32_t triangle, instance; float t, u, v; } ray_crossing;
+typedef void ray_visitor(void *user, uint32_t ray, const ray_crossing *);
+
+/* Shows every surface that each ray meets, in no order, now and then one twice. Only for worlds with solids. */
+void accel_visit(const world *, const ray_lanes *, ray_visitor *, void *user, trace_counts *);
+
 enum { RAY_STOPPED, RAY_REACHES, RAY_REFUSED };
 
 /* For each ray: does it reach its end? */

@@ -12,9 +12,6 @@ static bool stops(const coverage_context *c, uint32_t ray, uint32_t triangle, ui
     return sample_keyed(r->independent, p, hash_triple(r->key, triangle, instance)).x < alpha;
 }
 
-/* Arrays of N, as Embree lays out RTCRayN and RTCHitN; its C++ accessors are no use to C. */
-enum { RAY_ID = 10, HIT_U = 3, HIT_V = 4, HIT_PRIMITIVE = 5, HIT_GEOMETRY = 6, HIT_INSTANCE = 7 };
-
 void coverage_filter(const struct RTCFilterFunctionNArguments *args) {
     const coverage_context *context = (const coverage_context *)(const void *)args->context;
     const world *w = context->world;
@@ -23,9 +20,7 @@ void coverage_filter(const struct RTCFilterFunctionNArguments *args) {
     size_t n = args->N;
     for (size_t k = 0; k < n; k++) {
         if (args->valid[k] != -1) continue;
-        uint32_t placed = hit[HIT_INSTANCE * n + k];
-        uint32_t instance = placed == RTC_INVALID_GEOMETRY_ID ? 0 : placed - 1;
-        uint32_t triangle = w->instances[instance].triangle_base[hit[HIT_GEOMETRY * n + k]] + hit[HIT_PRIMITIVE * n + k];
+        uint32_t instance, triangle = filter_triangle(w, hit, n, k, &instance);
         if (!stops(context, ray[RAY_ID * n + k], triangle, instance, hit_f[HIT_U * n + k], hit_f[HIT_V * n + k]))
             args->valid[k] = 0;
     }

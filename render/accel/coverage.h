@@ -16,6 +16,16 @@ typedef struct coverage_context {
     const ray_coverage *coverage; /* arrays by ray id */
 } coverage_context;
 
+/* Arrays of N, as Embree lays out RTCRayN and RTCHitN; its C++ accessors are no use to C. */
+enum { RAY_T = 8, RAY_ID = 10, HIT_U = 3, HIT_V = 4, HIT_PRIMITIVE = 5, HIT_GEOMETRY = 6, HIT_INSTANCE = 7 };
+
+/* Which triangle, and of which copy, the k-th hit of N is. */
+static inline uint32_t filter_triangle(const world *w, const uint32_t *hit, size_t n, size_t k, uint32_t *instance) {
+    uint32_t placed = hit[HIT_INSTANCE * n + k];
+    *instance = placed == RTC_INVALID_GEOMETRY_ID ? 0 : placed - 1;
+    return w->instances[*instance].triangle_base[hit[HIT_GEOMETRY * n + k]] + hit[HIT_PRIMITIVE * n + k];
+}
+
 void coverage_filter(const struct RTCFilterFunctionNArguments *);
 
 #endif

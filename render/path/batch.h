@@ -11,6 +11,7 @@
 
 #include "render/accel/accel.h"
 #include "render/bsdf/bsdf.h"
+#include "render/path/touch.h"
 #include "render/world/world.h"
 
 enum {
@@ -29,15 +30,20 @@ enum {
     X(float, pdf)                                /* of the direction; 0: from the camera or a delta lobe */            \
     X(float, squeeze)                            /* η² that the throughput was divided by, for roulette */             \
     X(uint32_t, slot)                            /* which of the batch's samples this is */                            \
-    X(uint32_t, seed) X(uint32_t, index)         /* sample_point */                                                    \
-    X(uint64_t, media)                           /* stack of media around the origin, four of 16 bits, top lowest */
+    X(uint32_t, seed) X(uint32_t, index)         /* sample_point */
+
+/* The same, where the world has solids: the stack of media around the origin (medium.h). */
+#define PATH_MEDIA(X) X(uint64_t, media)
 
 /* Where the ray has met a surface: moved with the path, once. */
 #define PATH_HIT(X) X(float, t) X(float, u) X(float, v) X(uint32_t, triangle) X(uint32_t, instance)
 
+/* The same, where solids may touch: the stack of media behind the surface. */
+#define PATH_TOUCH(X) X(uint64_t, beyond)
+
 #define LANE_ARRAY(type, name) _Alignas(64) type name[LANES];
-typedef struct path_state { PATH_STATE(LANE_ARRAY) } path_state;
-typedef struct path_hit { PATH_HIT(LANE_ARRAY) } path_hit;
+typedef struct path_state { PATH_STATE(LANE_ARRAY) PATH_MEDIA(LANE_ARRAY) } path_state;
+typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit;
 
 /* A triangle's corners, in render space. */
 #define TRIANGLE_FIELDS(X)                                                                                             \
@@ -65,7 +71,7 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) } path_hit;
     X(float, metallic) X(float, roughness) X(float, specular) X(float, f0)                                             \
     X(float, tint_r) X(float, tint_g) X(float, tint_b) /* of the coat's F0 */                                          \
     X(float, transmission) X(float, eta) X(float, thin)                                                                \
-    X(uint32_t, medium)                          /* behind the surface; 0: none */                                     \
+    X(uint64_t, beyond)                          /* stack of media behind the surface */                               \
     X(uint32_t, crosses)                         /* the next ray lies on the far side */                               \
     X(float, emit_r) X(float, emit_g) X(float, emit_b)                                                                 \
     X(float, map_x) X(float, map_y) X(float, map_z) /* tangent-space normal */                                         \
@@ -108,6 +114,7 @@ typedef struct path_scratch {
     LANE_ARRAY(float, tfar)
     LANE_ARRAY(uint32_t, list)
     LANE_ARRAY(uint32_t, order)
+    touch touches[LANES];
 } path_scratch;
 
 /* Results, by slot. */

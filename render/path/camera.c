@@ -1,6 +1,10 @@
 #include "render/path/camera.h"
 
+#include <stdlib.h>
+
 #include "render/accel/accel.h"
+#include "render/path/medium.h"
+#include "render/world/lookup.h"
 
 /* The camera's axes without scale; a camera that was flattened keeps what is left of it. */
 static void set_frame(camera *c, const kiln_camera *from) {
@@ -44,4 +48,60 @@ bool camera_make(const world *w, const kiln_camera *from, uint32_t width, uint32
     c->focus = from->focus_distance > 0 ? (float)(from->focus_distance * w->scale) : 1.0f;
     if (c->lens_radius > 0 && !(from->focus_distance > 0)) c->focus = focus_on_middle(w, c);
     return true;
+}
+
+/* Enough that a hole in a mesh, or an edge that a ray slips through, is outvoted. */
+enum { MEDIA_RAYS = 31 };
+
+/* How many more backs than fronts of each medium the rays meet: a ray leaves a closed mesh once more than it enters it
+ * when it starts inside, and as often when it starts outside. */
+typedef struct media_count {
+    const world *world;
+    const float *dx, *dy, *dz;
+    int32_t *counts; /* media_count of each ray */
+} media_count;
+
+static void count_crossing(void *user, uint32_t ray, const ray_crossing *c) {
+    const media_count *m = user;
+    const world *w = m->world;
+    uint32_t medium = w->materials[w->triangle_material[c->triangle]].medium;
+    float toward = v3_dot(lookup_facing(w, c->triangle, c->instance), v3(m->dx[ray], m->dy[ray], m->dz[ray]));
+    m->counts[(size_t)ray * w->media_count + medium] += toward > 0.0f ? 1 : -1;
+}
+
+static int by_number(const void *a, const void *b) {
+    int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* The median of the rays' counts, for each medium. */
+static uint64_t vote(const world *w, const int32_t *counts) {
+    uint64_t media = 0;
+    for (uint32_t m = 1; m < w->media_count; m++) {
+        int32_t sorted[MEDIA_RAYS];
+        for (uint32_t r = 0; r < MEDIA_RAYS; r++) sorted[r] = counts[(size_t)r * w->media_count + m];
+        qsort(sorted, MEDIA_RAYS, sizeof *sorted, by_number);
+        for (int32_t k = 0; k < sorted[MEDIA_RAYS / 2] && k < 4; k++) media = medium_enter(media, m);
+    }
+    return media;
+}
+
+uint64_t camera_media(const world *w, const camera *c) {
+    if (w->media_count < 2) return 0;
+    float ox[MEDIA_RAYS], oy[MEDIA_RAYS], oz[MEDIA_RAYS], dx[MEDIA_RAYS], dy[MEDIA_RAYS], dz[MEDIA_RAYS];
+    for (int i = 0; i < MEDIA_RAYS; i++) { /* a spiral over the sphere (Swinbank and Purser 2006): no axis, no plane */
+        float z = 1.0f - (2.0f * (float)i + 1.0f) / (float)MEDIA_RAYS, r = sqrtf(1.0f - z * z);
+        fm_pair a = fm_sincos_2pi(0.618033989f * (float)i);
+        vec3 d = v3_normalize(v3(r * a.cos, r * a.sin, z));
+        ox[i] = c->origin.x, oy[i] = c->origin.y, oz[i] = c->origin.z;
+        dx[i] = d.x, dy[i] = d.y, dz[i] = d.z;
+    }
+    media_count m = {w, dx, dy, dz, array_alloc((size_t)MEDIA_RAYS * w->media_count, sizeof(int32_t))};
+    if (!m.counts) return 0; /* a few kilobytes for each medium: the film will not be had either */
+    trace_counts uncounted = {0};
+    ray_lanes rays = {ox, oy, oz, dx, dy, dz, NULL, NULL, {0}, NULL, MEDIA_RAYS};
+    accel_visit(w, &rays, count_crossing, &m, &uncounted);
+    uint64_t media = vote(w, m.counts);
+    free(m.counts);
+    return media;
 }

@@ -48,4 +48,7 @@ KERNEL camera_ray camera_ray_at(const camera *c, float x, float y, vec2 lens_u) 
 /* false: reported. picture: width and height in pixels. */
 bool camera_make(const world *, const kiln_camera *, uint32_t width, uint32_t height, camera *, kiln_report *);
 
+/* The stack of media (medium.h) around the camera's origin. */
+uint64_t camera_media(const world *, const camera *);
+
 #endif

@@ -1,4 +1,8 @@
-/* render/path/medium.h: which media a point lies in: a stack of four, 16 bits each, the innermost lowest; 0: none. */
+/* render/path/medium.h: which media a point lies in: a stack of four, 16 bits each; 0: none. Scalar kernels.
+ *
+ * Media are numbered by rank (render/world/media.c), and the stack is kept in that order, the highest lowest: that is
+ * the one which is there, whatever others overlap it (Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray Traced
+ * Images"). A medium may be in the stack more than once, for copies share materials. */
 #ifndef KILN_RENDER_PATH_MEDIUM_H
 #define KILN_RENDER_PATH_MEDIUM_H
 
@@ -7,33 +11,55 @@
 #include "base/fmath.h"
 #include "base/kernel.h"
 #include "base/vec.h"
+#include "render/world/world.h"
 
-KERNEL uint64_t medium_enter(uint64_t media, uint32_t medium) { return media << 16 | medium; }
+/* The medium that is there. */
+KERNEL uint32_t medium_top(uint64_t media) { return (uint32_t)(media & 0xffffu); }
 
-/* Takes the innermost occurrence out; a medium that the path never entered (an open mesh) changes nothing. */
-KERNEL uint64_t medium_leave(uint64_t media, uint32_t medium) {
-    uint64_t first = media >> 16;
-    uint64_t second = (media >> 32 << 16) | (media & 0xffffu);
-    uint64_t third = (media >> 48 << 32) | (media & 0xffffffffu);
-    uint64_t fourth = media & 0xffffffffffffu;
-    uint64_t r = media;
-    r = (uint32_t)(media >> 48 & 0xffffu) == medium ? fourth : r;
-    r = (uint32_t)(media >> 32 & 0xffffu) == medium ? third : r;
-    r = (uint32_t)(media >> 16 & 0xffffu) == medium ? second : r;
-    return (uint32_t)(media & 0xffffu) == medium ? first : r;
+/* A fifth one is too many: the lowest rank is forgotten. */
+KERNEL uint64_t medium_enter(uint64_t media, uint32_t medium) {
+    unsigned above = 0;
+    for (unsigned k = 0; k < 64; k += 16) above += (media >> k & 0xffffu) > medium ? 16u : 0u;
+    if (above == 64) return media;
+    uint64_t higher = media & (((uint64_t)1 << above) - 1);
+    return (media ^ higher) << 16 | (uint64_t)medium << above | higher;
 }
 
+/* Takes one occurrence out; a medium that the path never entered (an open mesh) changes nothing. */
+KERNEL uint64_t medium_leave(uint64_t media, uint32_t medium) {
+    for (unsigned k = 0; k < 64; k += 16) {
+        if ((media >> k & 0xffffu) != medium) continue;
+        uint64_t higher = media & (((uint64_t)1 << k) - 1);
+        return k == 48 ? higher : media >> (k + 16) << k | higher;
+    }
+    return media;
+}
+
+/* The stack on the other side of a boundary of the medium; 0: not a boundary. */
 KERNEL uint64_t medium_cross(uint64_t media, uint32_t medium, int entering) {
-    uint64_t in = medium_enter(media, medium), out = medium_leave(media, medium);
-    return medium ? (entering ? in : out) : media;
+    return !medium ? media : entering ? medium_enter(media, medium) : medium_leave(media, medium);
 }
 
 /* What is left of light after a distance: exp(−σ distance), σ the three of a medium in the table. Over an infinite
  * distance nothing is taken: a ray that leaves the scene from inside of a medium has met an open mesh. */
-KERNEL vec3 medium_transmittance(const float *absorption, uint32_t medium, float distance) {
+KERNEL vec3 medium_transmittance(const float *extinction, uint32_t medium, float distance) {
     float d = distance < INFINITY ? -distance : 0.0f;
     int32_t k = 3 * (int32_t)medium; /* signed, and no pointer of its own: gathers want it so */
-    return v3(fm_exp(absorption[k] * d), fm_exp(absorption[k + 1] * d), fm_exp(absorption[k + 2] * d));
+    return v3(fm_exp(extinction[k] * d), fm_exp(extinction[k + 1] * d), fm_exp(extinction[k + 2] * d));
+}
+
+/* What a path that travels in `near` meets at a surface that bounds `medium` and leads to the stack `beyond`. */
+typedef struct medium_boundary {
+    float eta;  /* n of the far side over n of the near one */
+    int hidden; /* the same medium is there on both sides: nothing reflects, nothing bends */
+} medium_boundary;
+
+KERNEL medium_boundary medium_boundary_at(const world_medium *table, uint32_t medium, uint64_t media, uint64_t beyond,
+                                          int entering) {
+    uint32_t near = medium_top(media), far = medium_top(beyond);
+    /* Left, but never entered: the mesh is open. The medium is taken to have been there, unless a higher one is. */
+    if (media == beyond && !entering && medium > near) near = medium;
+    return (medium_boundary){table[far].ior / table[near].ior, near == far};
 }
 
 #endif

@@ -12,6 +12,7 @@ static void look_at_surfaces(const path_context *c, batch *b) {
     STAGE(fetch)(c, b);
     STAGE(surface)(c, b);
     STAGE(material)(c, b);
+    if (c->world->media_count > 1) STAGE(boundary)(c, b);
     STAGE(normal)(c, b);
 }
 
@@ -20,6 +21,7 @@ void STAGE(trace_samples)(const path_context *c, const path_sample *samples, uin
     STAGE(camera)(c, samples, count, b);
     while (b->n > 0) {
         STAGE(trace)(c, b);
+        if (w->touches) STAGE(touch)(c, b);
         STAGE(escape)(c, b);
         STAGE(sort)(c, b);
         look_at_surfaces(c, b);

@@ -12,6 +12,8 @@
 typedef struct path_context {
     const world *world;
     camera camera;
+    uint64_t media;         /* stack of those around the camera */
+    float squeeze;          /* n² there: the camera itself is filled with air, which takes radiance over as L/n² */
     pixel_filter filter;
     uint32_t width, height; /* of the whole picture */
     uint32_t seed;

@@ -20,6 +20,8 @@ void STAGE(camera)(const path_context *c, const path_sample *samples, uint32_t c
     int independent = c->independent;
     const camera *cam = &c->camera;
     const pixel_filter *filter = &c->filter;
+    uint64_t media = c->media;
+    float squeeze = c->squeeze;
     LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
         sample_point p = {s->index[i], s->seed[i]};
         vec2 pixel = sample_pair(independent, p, SAMPLE_PIXEL, 0);
@@ -31,11 +33,11 @@ void STAGE(camera)(const path_context *c, const path_sample *samples, uint32_t c
         s->dx[i] = r.direction.x, s->dy[i] = r.direction.y, s->dz[i] = r.direction.z;
         x->tnear[i] = r.near;
         x->tfar[i] = r.far;
-        float alive = s->slot[i] == SLOT_NOWHERE ? 0.0f : 1.0f;
+        float alive = s->slot[i] == SLOT_NOWHERE ? 0.0f : 1.0f / squeeze;
         s->tr[i] = s->tg[i] = s->tb[i] = alive;
         s->lr[i] = s->lg[i] = s->lb[i] = 0.0f;
         s->pdf[i] = 0.0f;
-        s->squeeze[i] = 1.0f;
-        s->media[i] = 0;
+        s->squeeze[i] = squeeze;
+        s->media[i] = media;
     }
 }

@@ -28,10 +28,8 @@ static void attenuate(const path_context *c, batch *b) {
     path_scratch *x = &b->scratch;
     for (uint32_t i = 0; i < b->n; i++) {
         vec3 wi = {x->wx[i], x->wy[i], x->wz[i]}, n = {x->gx[i], x->gy[i], x->gz[i]};
-        bool solid = i >= b->kinds[KIND_TRANSMISSIVE].first && x->medium[i];
-        uint64_t media = s->media[i];
-        if (solid && v3_dot(wi, n) < 0.0f) media = medium_cross(media, x->medium[i], x->front[i] > 0.5f);
-        vec3 left = medium_transmittance(c->world->media, media & 0xffffu, x->distance[i]);
+        uint64_t media = v3_dot(wi, n) < 0.0f ? x->beyond[i] : s->media[i];
+        vec3 left = medium_transmittance(c->world->extinction, medium_top(media), x->distance[i]);
         x->cr[i] *= left.x, x->cg[i] *= left.y, x->cb[i] *= left.z;
     }
 }

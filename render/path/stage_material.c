@@ -17,11 +17,9 @@ static void load_glossy(const world *w, path_scratch *x, uint32_t i) {
 
 static void load_transmissive(const world *w, path_scratch *x, uint32_t i) {
     const world_material *m = &w->materials[x->material[i]];
-    bool outside = x->front[i] > 0.5f || m->thin > 0.5f;
     x->transmission[i] = m->transmission;
     x->thin[i] = m->thin;
-    x->eta[i] = outside ? m->eta : 1.0f / m->eta;
-    x->medium[i] = m->medium;
+    x->eta[i] = m->eta;
 }
 
 static void tint_by_vertices(const world *w, const path_hit *h, path_scratch *x, uint32_t n) {

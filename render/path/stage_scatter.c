@@ -1,5 +1,4 @@
 #include "render/path/lanes.h"
-#include "render/path/medium.h"
 #include "render/path/roulette.h"
 #include "render/path/stages.h"
 
@@ -32,12 +31,12 @@ static void cross_media(batch *b) {
     path_state *s = batch_state(b);
     const path_scratch *x = &b->scratch;
     for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_TRANSMISSIVE].end; i++)
-        if (x->crosses[i]) s->media[i] = medium_cross(s->media[i], x->medium[i], x->front[i] > 0.5f);
+        if (x->crosses[i]) s->media[i] = x->beyond[i];
 }
 
 void STAGE(scatter)(const path_context *c, batch *b) {
     scatter(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
     scatter(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
     scatter(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
-    cross_media(b);
+    if (c->world->media_count > 1) cross_media(b);
 }

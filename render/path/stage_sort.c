@@ -6,7 +6,7 @@
 static bool is_alive(const path_state *s, uint32_t i) { return s->tr[i] > 0.0f || s->tg[i] > 0.0f || s->tb[i] > 0.0f; }
 
 /* Moves the lanes that order names, with their hits, to the other half of the batch. */
-static void move(batch *b, uint32_t count, bool with_hits) {
+static void move(const world *w, batch *b, uint32_t count, bool with_hits) {
     const path_state *from = &b->states[b->current];
     path_state *to = &b->states[1 - b->current];
     const path_hit *from_hit = &b->hits[b->current];
@@ -16,8 +16,14 @@ static void move(batch *b, uint32_t count, bool with_hits) {
 #define MOVE_HIT(type, name) \
     LANE_LOOP (uint32_t j = 0; j < count; j++) to_hit->name[j] = from_hit->name[order[j] & ~FILLING];
     PATH_STATE(MOVE_STATE)
+    if (w->media_count > 1) {
+        PATH_MEDIA(MOVE_STATE)
+    }
     if (with_hits) {
         PATH_HIT(MOVE_HIT)
+    }
+    if (with_hits && w->touches) {
+        PATH_TOUCH(MOVE_HIT)
     }
     for (uint32_t j = 0; j < count; j++) {
         if (!(order[j] & FILLING)) continue;
@@ -51,16 +57,15 @@ void STAGE(sort)(const path_context *c, batch *b) {
             if (kind[i] == k) order[count++] = i;
         b->kinds[k].end = count = fill_group(order, count);
     }
-    move(b, count, true);
+    move(w, b, count, true);
 }
 
 void STAGE(close)(const path_context *c, batch *b) {
-    (void)c;
     const path_state *s = batch_state(b);
     uint32_t *order = b->scratch.order, count = 0;
     for (uint32_t i = 0; i < b->n; i++) {
         if (is_alive(s, i)) order[count++] = i;
         else batch_flush(b, i);
     }
-    move(b, fill_group(order, count), false);
+    move(c->world, b, fill_group(order, count), false);
 }

@@ -1,4 +1,5 @@
 #include "render/path/stages.h"
+#include "render/world/lookup.h"
 
 /* Layers of culled surfaces that a camera ray looks through before it gives up: more than any asset stacks. */
 enum { CULLED_LAYERS = 1024 };
@@ -7,13 +8,8 @@ static bool is_culled(const world *w, const path_state *s, const path_hit *h, ui
     if (h->triangle[i] >= TRIANGLE_REFUSED) return false;
     const world_material *m = &w->materials[w->triangle_material[h->triangle[i]]];
     if (m->flags & MATERIAL_DOUBLE_SIDED || m->kind == KIND_TRANSMISSIVE) return false;
-    const uint32_t *v = w->triangles + 3 * (size_t)h->triangle[i];
-    const world_instance *copy = &w->instances[h->instance[i]];
-    vec3 p0 = v3_load(w->vertices[v[0]].p);
-    vec3 e1 = v3_sub(v3_load(w->vertices[v[1]].p), p0), e2 = v3_sub(v3_load(w->vertices[v[2]].p), p0);
-    vec3 n = v3_cross(e1, e2), d = v3(s->dx[i], s->dy[i], s->dz[i]);
-    if (h->instance[i]) n = world_instance_normal(copy, n);
-    return v3_dot(n, d) > 0.0f;
+    vec3 d = v3(s->dx[i], s->dy[i], s->dz[i]);
+    return v3_dot(lookup_facing(w, h->triangle[i], h->instance[i]), d) > 0.0f;
 }
 
 /* Rays of the camera go on behind what they see from behind. */

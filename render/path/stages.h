@@ -20,6 +20,8 @@ void STAGE(trace_samples)(const path_context *, const path_sample *samples, uint
 void STAGE(camera)(const path_context *, const path_sample *samples, uint32_t count, batch *);
 /* Where each ray meets a surface first; single-sided surfaces seen from behind by the camera are not there. */
 void STAGE(trace)(const path_context *, batch *);
+/* Surfaces of solids that coincide become one. */
+void STAGE(touch)(const path_context *, batch *);
 /* Paths that left the scene collect what shines from all around, and end. */
 void STAGE(escape)(const path_context *, batch *);
 /* The paths that hit something close up, in ranges of one material kind each. */
@@ -32,6 +34,8 @@ void STAGE(surface)(const path_context *, batch *);
 void STAGE(absorb)(const path_context *, batch *);
 /* What the materials say: constants, then textures. */
 void STAGE(material)(const path_context *, batch *);
+/* What lies behind boundaries of solids, and how they refract. */
+void STAGE(boundary)(const path_context *, batch *);
 /* The shading normal: mapped, and facing wo. */
 void STAGE(normal)(const path_context *, batch *);
 /* Albedo, normal and depth of the first surface. */

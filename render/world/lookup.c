@@ -8,6 +8,13 @@ vec2 lookup_uv(const world *w, uint32_t triangle, uint32_t uv_set, vec2 at) {
     return (vec2){b0 * uv[0][0] + at.x * uv[1][0] + at.y * uv[2][0], b0 * uv[0][1] + at.x * uv[1][1] + at.y * uv[2][1]};
 }
 
+vec3 lookup_facing(const world *w, uint32_t triangle, uint32_t instance) {
+    const uint32_t *v = w->triangles + 3 * (size_t)triangle;
+    vec3 p0 = v3_load(w->vertices[v[0]].p);
+    vec3 n = v3_cross(v3_sub(v3_load(w->vertices[v[1]].p), p0), v3_sub(v3_load(w->vertices[v[2]].p), p0));
+    return instance ? world_instance_normal(&w->instances[instance], n) : n;
+}
+
 static const world_texture *texture_of(const world *w, uint32_t triangle, material_slot slot) {
     uint32_t handle = w->materials[w->triangle_material[triangle]].texture[slot];
     return handle ? &w->textures[handle - 1] : NULL;

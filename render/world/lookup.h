@@ -7,6 +7,9 @@
 
 vec2 lookup_uv(const world *, uint32_t triangle, uint32_t uv_set, vec2 at);
 
+/* Where a triangle's copy faces, in render space, of any length. */
+vec3 lookup_facing(const world *, uint32_t triangle, uint32_t instance);
+
 /* Opacity times texture times vertex colour. */
 float lookup_alpha(const world *, uint32_t triangle, vec2 at);
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "render/world/images.h"
+#include "render/world/media.h"
 #include "render/world/world.h"
 #include "scene/transfer.h"
 
@@ -25,9 +26,6 @@ typedef struct builder {
 
 static bool transmits(const kiln_material *m) {
     return m->layers & KILN_LAYER_TRANSMISSION && m->transmission.value > 0;
-}
-static bool is_solid(const kiln_material *m) {
-    return transmits(m) && m->layers & KILN_LAYER_VOLUME && m->thickness.value > 0;
 }
 static bool emits(const kiln_material *m) {
     return m->emission.value[0] > 0 || m->emission.value[1] > 0 || m->emission.value[2] > 0;
@@ -101,27 +99,6 @@ static bool add_texture(builder *b, const slot_use *use, uint32_t *handle) {
     return true;
 }
 
-/* Absorption after Beer: attenuation_color is what is left after attenuation_distance. Every solid is a medium, also a
- * clear one: a path that enters it must know when it leaves what is around. */
-static bool set_medium(builder *b, world_material *m, const kiln_material *from) {
-    world *w = b->world;
-    if (!is_solid(from)) return true;
-    if (w->media_count > 0xffff)
-        return report_error(b->report, KILN_CODE_LIMIT, NULL, "merge materials that are equal",
-                            "more than 65,535 materials bound a volume");
-    m->medium = w->media_count++;
-    if (!(from->attenuation_distance > 0)) return true;
-    vec3 left = decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->attenuation_color);
-    float per_unit = 1.0f / (from->attenuation_distance * (float)w->scale);
-    const float least = 1e-9f; /* a colour of 0 absorbs all but a billionth over the distance */
-    float *a = w->media + 3 * (size_t)m->medium;
-    a[0] = -logf(fminf(fmaxf(left.x, least), 1.0f)) * per_unit;
-    a[1] = -logf(fminf(fmaxf(left.y, least), 1.0f)) * per_unit;
-    a[2] = -logf(fminf(fmaxf(left.z, least), 1.0f)) * per_unit;
-    w->absorbs |= a[0] > 0 || a[1] > 0 || a[2] > 0;
-    return true;
-}
-
 static void set_constants(const builder *b, world_material *m, const kiln_material *from) {
     bool unlit = from->layers & KILN_LAYER_UNLIT;
     vec3 base = decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->base_color.value);
@@ -135,9 +112,9 @@ static void set_constants(const builder *b, world_material *m, const kiln_materi
     m->normal_scale = from->normal.value;
     m->specular = unlit ? 0.0f : from->specular.value;
     m->transmission = transmits(from) && !unlit ? from->transmission.value : 0.0f;
-    m->thin = is_solid(from) ? 0.0f : 1.0f;
+    m->thin = material_is_solid(from) ? 0.0f : 1.0f;
     m->alpha_cutoff = from->alpha_cutoff;
-    m->eta = from->ior > 0 ? fminf(from->ior, 1000.0f) : 1000.0f; /* 0 stands for infinity */
+    m->eta = from->ior > 0 ? fminf(from->ior, WORLD_IOR_MAX) : WORLD_IOR_MAX; /* 0 stands for infinity */
     float root = (m->eta - 1.0f) / (m->eta + 1.0f);
     m->f0 = from->ior > 0 ? root * root : 1.0f;
     m->flags = (from->double_sided ? MATERIAL_DOUBLE_SIDED : 0u) | (unlit ? MATERIAL_UNLIT : 0u) |
@@ -194,15 +171,12 @@ static bool build(builder *b, const bool *used, uint32_t threads) {
     w->material_count = b->scene->material_count + 1;
     w->materials = ARENA_ARRAY(&w->arena, world_material, w->material_count);
     w->textures = ARENA_ARRAY(&w->arena, world_texture, (size_t)textures + 1);
-    w->media = ARENA_ARRAY(&w->arena, float, 3 * ((size_t)w->material_count + 1));
-    w->media_count = 1;
-    if (!w->materials || !w->textures || !w->media) return report_no_memory(b->report, "building materials");
+    if (!w->materials || !w->textures) return report_no_memory(b->report, "building materials");
     for (uint32_t i = 0; i < w->material_count; i++) {
         if (!used[i]) continue;
         world_material *m = &w->materials[i];
         const kiln_material *from = scene_material(b->scene, i);
         set_constants(b, m, from);
-        if (!set_medium(b, m, from)) return false;
         if (!set_textures(b, m, from)) return false;
         w->kinds |= 1u << m->kind;
         w->flags |= m->flags;
@@ -210,7 +184,7 @@ static bool build(builder *b, const bool *used, uint32_t threads) {
     }
     memcpy(w->uv_sets, b->uv_sets, sizeof w->uv_sets);
     w->uv_set_count = b->uv_set_count;
-    return true;
+    return world_build_media(w, b->scene, b->decoding, used, b->report);
 }
 
 bool world_build_materials(world *w, const kiln_scene *scene, const kiln_decoding *decoding, uint32_t threads,

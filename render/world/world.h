@@ -57,11 +57,19 @@ typedef struct world_material {
     float emission[3];
     float f0, eta, specular, specular_color[3], transmission, thin;
     float alpha_cutoff;
-    uint32_t medium;           /* behind the surface: into world.media; 0: none that matters */
+    uint32_t medium;           /* behind the surface: into world.media; 0: none */
     uint32_t texture[SLOT_COUNT];        /* 1 + index into world.textures; 0: none */
     uint32_t flags;
     material_kind kind;
 } world_material;
+
+/* An index of refraction that stands for infinity. */
+#define WORLD_IOR_MAX 1000.0f
+
+/* What fills a solid, beside what it takes away (world.extinction). */
+typedef struct world_medium {
+    float ior; /* at 587.6 nm */
+} world_medium;
 
 struct accel;
 
@@ -98,9 +106,11 @@ typedef struct world {
     uint32_t kinds;      /* bits of material_kind that occur */
     uint32_t flags;      /* union of the materials' flags that occur */
     bool single_sided;   /* some surface is culled from behind */
-    float *media;        /* absorption per length in render space, 3 each; [0] is air */
+    world_medium *media; /* [0] is air; the higher number is there where media overlap */
     uint32_t media_count;
+    float *extinction;   /* of each, 3, per length in render space */
     bool absorbs;        /* one of them is not 0 */
+    bool touches;        /* solids may touch or overlap */
 
     light_table lights;
     bool emits;          /* some surface shines, lights or unlit ones */

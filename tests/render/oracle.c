@@ -4,6 +4,7 @@
 #include "render/path/roulette.h"
 #include "render/path/shading.h"
 #include "render/path/surface.h"
+#include "render/path/touch.h"
 #include "render/world/lookup.h"
 
 /* One path, as it is between bounces. */
@@ -19,6 +20,7 @@ typedef struct hit {
     uint32_t triangle, instance;
     surface_point p;
     const world_material *material;
+    uint64_t beyond; /* media behind it */
 } hit;
 
 static vec2 draw(const path_context *c, const path *p, sample_purpose purpose) {
@@ -30,7 +32,8 @@ static ray_coverage coverage_of(const path_context *c, const path *p, sample_pur
 }
 
 static path start(const path_context *c, path_sample s) {
-    path p = {.point = sample_point_make(c->seed, s.y << 16 | s.x, s.n), .throughput = {1, 1, 1}, .squeeze = 1};
+    path p = {.point = sample_point_make(c->seed, s.y << 16 | s.x, s.n), .squeeze = c->squeeze, .media = c->media};
+    p.throughput = v3_splat(1.0f / c->squeeze);
     vec2 pixel = draw(c, &p, SAMPLE_PIXEL), lens = draw(c, &p, SAMPLE_LENS);
     float across = 2.0f / (float)c->width, down = 2.0f / (float)c->height;
     float x = (float)s.x + 0.5f + pixel_filter_offset(&c->filter, pixel.x);
@@ -40,36 +43,73 @@ static path start(const path_context *c, path_sample s) {
     return p;
 }
 
+/* The triangle in render space, as the stages fetch it. */
+static surface_triangle fetch(const world *w, const ray_crossing *c) {
+    const uint32_t *i = w->triangles + 3 * (size_t)c->triangle;
+    const world_vertex *a = &w->vertices[i[0]], *b = &w->vertices[i[1]], *d = &w->vertices[i[2]];
+    const world_instance *copy = &w->instances[c->instance];
+    surface_triangle tri = {.uv0 = {a->uv[0], a->uv[1]}, .uv1 = {b->uv[0], b->uv[1]}, .uv2 = {d->uv[0], d->uv[1]},
+                            .side = copy->side, .magnitude = copy->magnitude, .embree = {c->u, c->v, c->t}};
+    bool placed = c->instance != 0;
+    tri.p0 = placed ? world_instance_point(copy, v3_load(a->p)) : v3_load(a->p);
+    tri.p1 = placed ? world_instance_point(copy, v3_load(b->p)) : v3_load(b->p);
+    tri.p2 = placed ? world_instance_point(copy, v3_load(d->p)) : v3_load(d->p);
+    tri.n0 = placed ? world_instance_normal(copy, v3_load(a->n)) : v3_load(a->n);
+    tri.n1 = placed ? world_instance_normal(copy, v3_load(b->n)) : v3_load(b->n);
+    tri.n2 = placed ? world_instance_normal(copy, v3_load(d->n)) : v3_load(d->n);
+    return tri;
+}
+
+static bool is_culled(const world *w, const path *p, const ray_crossing *c) {
+    const world_material *m = &w->materials[w->triangle_material[c->triangle]];
+    bool one_sided = !(m->flags & MATERIAL_DOUBLE_SIDED) && m->kind != KIND_TRANSMISSIVE;
+    return one_sided && v3_dot(lookup_facing(w, c->triangle, c->instance), p->direction) > 0.0f;
+}
+
+typedef struct touch_visit { const world *world; vec3 direction; touch *touch; } touch_visit;
+static void add_touch(void *user, uint32_t ray, const ray_crossing *c) {
+    (void)ray;
+    const touch_visit *v = user;
+    touch_add(v->touch, v->world, v->direction, c);
+}
+
+/* Surfaces of solids that coincide with it become one; returns the media behind. */
+static uint64_t merge(const path_context *c, const path *p, ray_crossing *met) {
+    const world *w = c->world;
+    if (!w->touches || !w->materials[w->triangle_material[met->triangle]].medium) return p->media;
+    touch t = {0};
+    float about = touch_distance(w, p->direction, met->triangle, met->instance);
+    float near = fm_max(met->t - about, 0x1p-126f), far = met->t + about;
+    touch_add(&t, w, p->direction, met);
+    trace_counts counts = {0};
+    ray_lanes ray = {&p->origin.x, &p->origin.y, &p->origin.z, &p->direction.x, &p->direction.y, &p->direction.z,
+                     &near, &far, coverage_of(c, p, SAMPLE_COVERAGE), NULL, 1};
+    touch_visit visit = {w, p->direction, &t};
+    accel_visit(w, &ray, add_touch, &visit, &counts);
+    *met = t.shaded;
+    return touch_beyond(&t, p->media);
+}
+
 /* Closest hit, with single-sided surfaces that the camera sees from behind looked through. */
 static bool find(const path_context *c, path *p, hit *h) {
     const world *w = c->world;
-    ray_coverage coverage = coverage_of(c, p, SAMPLE_COVERAGE);
-    float t, u, v;
     trace_counts counts = {0};
-    float near = p->depth ? 0.0f : p->near, far = p->depth ? INFINITY : p->far;
-    for (;;) {
-        ray_lanes ray = {&p->origin.x, &p->origin.y, &p->origin.z, &p->direction.x, &p->direction.y, &p->direction.z,
-                         &near, &far, coverage, NULL, 1};
-        accel_closest(w, &ray, &t, &u, &v, &h->triangle, &h->instance, &counts);
-        if (h->triangle >= TRIANGLE_REFUSED) return false;
-        const uint32_t *i = w->triangles + 3 * (size_t)h->triangle;
-        const world_vertex *a = &w->vertices[i[0]], *b = &w->vertices[i[1]], *d = &w->vertices[i[2]];
-        const world_instance *copy = &w->instances[h->instance];
-        surface_triangle tri = {.uv0 = {a->uv[0], a->uv[1]}, .uv1 = {b->uv[0], b->uv[1]}, .uv2 = {d->uv[0], d->uv[1]},
-                                .side = copy->side, .magnitude = copy->magnitude, .embree = {u, v, t}};
-        bool placed = h->instance != 0;
-        tri.p0 = placed ? world_instance_point(copy, v3_load(a->p)) : v3_load(a->p);
-        tri.p1 = placed ? world_instance_point(copy, v3_load(b->p)) : v3_load(b->p);
-        tri.p2 = placed ? world_instance_point(copy, v3_load(d->p)) : v3_load(d->p);
-        tri.n0 = placed ? world_instance_normal(copy, v3_load(a->n)) : v3_load(a->n);
-        tri.n1 = placed ? world_instance_normal(copy, v3_load(b->n)) : v3_load(b->n);
-        tri.n2 = placed ? world_instance_normal(copy, v3_load(d->n)) : v3_load(d->n);
-        h->p = surface_at(p->origin, p->direction, &tri);
-        h->material = &w->materials[w->triangle_material[h->triangle]];
-        bool one_sided = !(h->material->flags & MATERIAL_DOUBLE_SIDED) && h->material->kind != KIND_TRANSMISSIVE;
-        if (p->depth || !one_sided || h->p.front > 0.5f) return true;
-        near = fm_next_up(t);
-    }
+    float near = p->depth ? 0x1p-126f : p->near, far = p->depth ? INFINITY : p->far;
+    ray_lanes ray = {&p->origin.x, &p->origin.y, &p->origin.z, &p->direction.x, &p->direction.y, &p->direction.z,
+                     &near, &far, coverage_of(c, p, SAMPLE_COVERAGE), NULL, 1};
+    ray_crossing met;
+    do {
+        accel_closest(w, &ray, &met.t, &met.u, &met.v, &met.triangle, &met.instance, &counts);
+        if (met.triangle >= TRIANGLE_REFUSED) return false;
+        near = fm_next_up(met.t);
+    } while (p->depth == 0 && is_culled(w, p, &met));
+    h->beyond = merge(c, p, &met);
+    surface_triangle tri = fetch(w, &met);
+    h->triangle = met.triangle, h->instance = met.instance;
+    h->p = surface_at(p->origin, p->direction, &tri);
+    h->material = &w->materials[w->triangle_material[h->triangle]];
+    if (!w->touches) h->beyond = medium_cross(p->media, h->material->medium, h->p.front > 0.5f);
+    return true;
 }
 
 static void collect(path *p, vec3 radiance, float weight) {
@@ -120,9 +160,8 @@ static void mix4(const world *w, const hit *h, const float *values, float out[4]
 static surface look_up(const path_context *c, const hit *h, vec3 *emission, vec3 *normal) {
     const world *w = c->world;
     const world_material *m = h->material;
-    bool outside = h->p.front > 0.5f || m->thin > 0.5f;
     surface s = {v3_load(m->base), m->metallic, m->roughness, m->specular, v3_load(m->specular_color), m->f0,
-                 m->transmission, outside ? m->eta : 1.0f / m->eta, m->thin};
+                 m->transmission, m->eta, m->thin};
     *emission = v3_load(m->emission);
     if (w->colors) {
         float tint[4];
@@ -155,6 +194,29 @@ static surface look_up(const path_context *c, const hit *h, vec3 *emission, vec3
         *normal = surface_map(*normal, direction, sign, map, h->p.front);
     }
     return s;
+}
+
+static float normal_reflectance(const world_material *m, float eta) {
+    float root = (eta - 1.0f) / (eta + 1.0f);
+    return m->f0 < 1.0f ? root * root : 1.0f;
+}
+
+/* What the media on both sides make of it. */
+static void bound(const path_context *c, const path *p, const hit *h, surface *s) {
+    const world *w = c->world;
+    const world_material *m = h->material;
+    if (m->medium) {
+        medium_boundary at = medium_boundary_at(w->media, m->medium, p->media, h->beyond, h->p.front > 0.5f);
+        s->eta = at.eta;
+        s->f0 = normal_reflectance(m, at.eta);
+        if (!at.hidden) return;
+        s->base = v3_splat(1);
+        s->metallic = s->roughness = s->f0 = 0;
+        s->transmission = 1;
+    } else if (p->media) {
+        s->eta = m->eta / w->media[medium_top(p->media)].ior;
+        s->f0 = normal_reflectance(m, s->eta);
+    }
 }
 
 static void emit(const path_context *c, path *p, const hit *h, vec3 emission) {
@@ -190,10 +252,8 @@ static void connect(const path_context *c, path *p, const hit *h, const shading 
     float density = r.pdf * distribution_probability(c->light_cdf, k);
     shading_connection n = shading_connect(mask, s, c->estimator, p->throughput, &r, density);
     if (w->absorbs) {
-        uint64_t media = p->media;
-        uint32_t medium = h->material->kind == KIND_TRANSMISSIVE ? h->material->medium : 0;
-        if (medium && v3_dot(r.wi, s->geometric) < 0.0f) media = medium_cross(media, medium, h->p.front > 0.5f);
-        n.contribution = v3_mul(n.contribution, medium_transmittance(w->media, media & 0xffffu, r.distance));
+        uint32_t medium = medium_top(v3_dot(r.wi, s->geometric) < 0.0f ? h->beyond : p->media);
+        n.contribution = v3_mul(n.contribution, medium_transmittance(w->extinction, medium, r.distance));
     }
     if (!(v3_max(n.contribution) > 0.0f)) return;
     uint32_t visible = RAY_STOPPED;
@@ -210,7 +270,7 @@ static bool scatter(const path_context *c, path *p, const hit *h, const shading 
     shading_scattering r = shading_scatter(mask, s, p->throughput, lobe.x, direction);
     if (mask & BSDF_TRANSMISSIVE && r.crosses) {
         if (s->bsdf.thin < 0.5f) p->squeeze *= s->bsdf.eta * s->bsdf.eta;
-        p->media = medium_cross(p->media, h->material->medium, h->p.front > 0.5f);
+        p->media = h->beyond;
     }
     roulette policy = roulette_make(c, p->depth);
     p->throughput = v3_scale(r.throughput, roulette_weight(&policy, r.throughput, p->squeeze, lobe.y));
@@ -230,9 +290,10 @@ oracle_result oracle_trace(const path_context *c, path_sample sample) {
             break;
         }
         if (c->world->absorbs)
-            p.throughput = v3_mul(p.throughput, medium_transmittance(c->world->media, p.media & 0xffffu, h.p.hit.t));
+            p.throughput = v3_mul(p.throughput, medium_transmittance(c->world->extinction, medium_top(p.media), h.p.hit.t));
         vec3 wo = v3_neg(p.direction), normal = h.p.shading, emission;
         surface s = look_up(c, &h, &emission, &normal);
+        bound(c, &p, &h, &s);
         normal = surface_face(normal, wo);
         if (c->world->emits) emit(c, &p, &h, emission);
         if (p.depth >= c->max_depth) {

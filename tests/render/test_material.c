@@ -193,7 +193,7 @@ static void records_hold_physics(void **state) {
         double n = (double)m[i].ior, f0 = n > 0 ? (n - 1) * (n - 1) / ((n + 1) * (n + 1)) : 1;
         assert_true(fabs((double)r->f0 - f0) < 1e-6 && (n == 0 || r->eta == m[i].ior) && r->thin == 0);
         assert_true(isfinite(r->eta));
-        const float *sigma = w->media + 3 * r->medium;
+        const float *sigma = w->extinction + 3 * r->medium;
         double distance = (double)m[i].attenuation_distance * w->scale;
         double absorbs = distance > 0 ? -log(0.25) / distance : 0;
         assert_true(r->medium > 0 && fabs((double)sigma[0] - absorbs) < 1e-5 * absorbs + 1e-9);

@@ -1,0 +1,192 @@
+#include "render/world/media.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene/transfer.h"
+
+bool material_is_solid(const kiln_material *m) {
+    bool transmits = (m->layers & KILN_LAYER_TRANSMISSION && m->transmission.value > 0) ||
+                     (m->layers & KILN_LAYER_DIFFUSE_TRANSMISSION && m->diffuse_transmission.value > 0);
+    return transmits && !(m->layers & KILN_LAYER_UNLIT) && m->layers & KILN_LAYER_VOLUME && m->thickness.value > 0;
+}
+
+/* A solid material, and how it ranks. */
+typedef struct candidate {
+    kiln_id material;
+    int32_t priority;
+    double size; /* of the largest copy that has it: the volume of its bounding box, m³ */
+} candidate;
+
+/* The lowest rank first. Where volumes overlap the one of higher priority is there, of equal ones the smaller: so a
+ * marble is in the water and not the water in the marble. The last key only makes the order whole. */
+static int by_rank(const void *left, const void *right) {
+    const candidate *a = left, *b = right;
+    if (a->priority != b->priority) return a->priority < b->priority ? -1 : 1;
+    if (a->size != b->size) return a->size > b->size ? -1 : 1;
+    return a->material < b->material ? -1 : 1;
+}
+
+typedef struct box { float low[3], high[3]; } box;
+
+static const box empty = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+
+static double box_volume(const box *b) {
+    double volume = 1;
+    for (int k = 0; k < 3; k++) volume *= fmax((double)b->high[k] - (double)b->low[k], 0);
+    return volume;
+}
+
+/* The part of a mesh that has a material. */
+static box material_box(const kiln_mesh *m, kiln_id material) {
+    box b = empty;
+    for (uint32_t f = 0; f < m->face_count; f++) {
+        if (mesh_face_material(m, f) != material) continue;
+        for (uint32_t c = 0; c < mesh_face_size(m, f); c++) {
+            const float *p = m->positions + 3 * (size_t)m->face_vertices[mesh_face_first(m, f) + c];
+            for (int k = 0; k < 3; k++) b.low[k] = fminf(b.low[k], p[k]), b.high[k] = fmaxf(b.high[k], p[k]);
+        }
+    }
+    return b;
+}
+
+/* sizes, of the largest copy of each material. */
+static void find_sizes(const kiln_scene *scene, const double *scales, candidate *list, int n, double *sizes) {
+    for (uint32_t i = 0; i < scene->mesh_count; i++) {
+        const kiln_mesh *m = &scene->meshes[i];
+        if (!(scales[i] > 0)) continue;
+        box whole = empty;
+        memcpy(whole.low, m->min, sizeof whole.low), memcpy(whole.high, m->max, sizeof whole.high);
+        if (!m->face_materials) sizes[m->material] = fmax(sizes[m->material], box_volume(&whole) * scales[i]);
+        for (int k = 0; m->face_materials && k < n; k++) {
+            box b = material_box(m, list[k].material);
+            sizes[list[k].material] = fmax(sizes[list[k].material], box_volume(&b) * scales[i]);
+        }
+    }
+    for (int k = 0; k < n; k++) list[k].size = sizes[list[k].material];
+}
+
+/* By how much the largest copy of each mesh is larger than the mesh, in volume. */
+static void find_scales(const kiln_scene *scene, double *scales) {
+    for (uint32_t i = 0; i < scene->instance_count; i++) {
+        const kiln_instance *copy = &scene->instances[i];
+        double *scale = &scales[copy->mesh - 1];
+        *scale = fmax(*scale, fabs(mat4_determinant(&copy->transforms[0])));
+    }
+}
+
+/* Absorption after Beer: attenuation_color is what is left after attenuation_distance. */
+static vec3 extinction_of(const world *w, const kiln_decoding *decoding, const kiln_material *m) {
+    if (!(m->attenuation_distance > 0)) return v3_splat(0);
+    vec3 left = decoding_apply(decoding, KILN_TRANSFER_LINEAR, m->attenuation_color);
+    float per_unit = 1.0f / (m->attenuation_distance * (float)w->scale);
+    const float least = 1e-9f; /* a colour of 0 absorbs all but a billionth over the distance */
+    return v3(-logf(fminf(fmaxf(left.x, least), 1.0f)) * per_unit, -logf(fminf(fmaxf(left.y, least), 1.0f)) * per_unit,
+              -logf(fminf(fmaxf(left.z, least), 1.0f)) * per_unit);
+}
+
+static void set_medium(world *w, const kiln_decoding *decoding, const kiln_material *from, uint32_t number) {
+    world_medium *m = &w->media[number];
+    vec3 sigma = extinction_of(w, decoding, from);
+    *m = (world_medium){.ior = from->ior > 0 ? fminf(from->ior, WORLD_IOR_MAX) : WORLD_IOR_MAX};
+    v3_store(w->extinction + 3 * (size_t)number, sigma);
+    w->absorbs |= v3_max(sigma) > 0;
+}
+
+/* A box of a copy with a solid material, in the scene's space. */
+static box placed_box(const kiln_mesh *m, const mat4 *to) {
+    box b = empty;
+    for (int corner = 0; corner < 8; corner++) {
+        dvec3 p = mat4_point(to, (dvec3){(double)(corner & 1 ? m->max : m->min)[0], (double)(corner & 2 ? m->max : m->min)[1],
+                                         (double)(corner & 4 ? m->max : m->min)[2]});
+        const double at[3] = {p.x, p.y, p.z};
+        for (int k = 0; k < 3; k++) {
+            b.low[k] = fminf(b.low[k], (float)at[k]), b.high[k] = fmaxf(b.high[k], (float)at[k]);
+        }
+    }
+    return b;
+}
+
+/* Boxes that touch overlap, whatever rounding says. */
+static bool boxes_meet(const box *a, const box *b) {
+    for (int k = 0; k < 3; k++) {
+        float slack = 1e-5f * (fmaxf(fabsf(a->low[k]), fabsf(a->high[k])) + fmaxf(fabsf(b->low[k]), fabsf(b->high[k])));
+        if (a->low[k] > b->high[k] + slack || b->low[k] > a->high[k] + slack) return false;
+    }
+    return true;
+}
+
+/* Copies that are compared one with another; where there are more, some are taken to touch. */
+enum { COMPARED = 512 };
+
+static bool some_touch(const world *w, const kiln_scene *scene) {
+    box boxes[COMPARED];
+    int count = 0;
+    for (uint32_t i = 0; i < scene->instance_count; i++) {
+        const kiln_instance *copy = &scene->instances[i];
+        const kiln_mesh *m = scene_mesh(scene, copy->mesh);
+        uint32_t solids = w->materials[m->material].medium != 0;
+        if (m->face_materials) {
+            kiln_id first = 0;
+            solids = 0;
+            for (uint32_t f = 0; f < m->face_count && solids < 2; f++) {
+                kiln_id id = m->face_materials[f];
+                if (!w->materials[id].medium || id == first) continue;
+                first = id;
+                solids++;
+            }
+        }
+        if (solids > 1 || (solids && count == COMPARED)) return true;
+        if (!solids) continue;
+        boxes[count] = placed_box(m, &copy->transforms[0]);
+        for (int k = 0; k < count; k++)
+            if (boxes_meet(&boxes[k], &boxes[count])) return true;
+        count++;
+    }
+    return false;
+}
+
+/* What building needs for a while. */
+typedef struct scratch {
+    candidate *list;
+    double *scales, *sizes; /* of meshes; of materials */
+} scratch;
+
+static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decoding, const bool *used, scratch *s,
+                  kiln_report *report) {
+    candidate *list = s->list;
+    int n = 0;
+    for (uint32_t i = 0; i < w->material_count; i++) {
+        const kiln_material *m = scene_material(scene, i);
+        if (used[i] && material_is_solid(m)) list[n++] = (candidate){.material = i, .priority = m->priority};
+    }
+    if (n) find_scales(scene, s->scales);
+    if (n) find_sizes(scene, s->scales, list, n, s->sizes);
+    if (n > 0xffff)
+        return report_error(report, KILN_CODE_LIMIT, NULL, "merge materials that are equal",
+                            "more than 65,535 materials bound a volume");
+    qsort(list, (size_t)n, sizeof *list, by_rank);
+    w->media = ARENA_ARRAY(&w->arena, world_medium, (size_t)n + 1);
+    w->extinction = ARENA_ARRAY(&w->arena, float, 3 * ((size_t)n + 1));
+    if (!w->media || !w->extinction) return report_no_memory(report, "building media");
+    w->media[0].ior = 1;
+    w->media_count = (uint32_t)n + 1;
+    for (int i = 0; i < n; i++) {
+        w->materials[list[i].material].medium = (uint32_t)i + 1;
+        set_medium(w, decoding, scene_material(scene, list[i].material), (uint32_t)i + 1);
+    }
+    w->touches = n > 0 && some_touch(w, scene);
+    return true;
+}
+
+bool world_build_media(world *w, const kiln_scene *scene, const kiln_decoding *decoding, const bool *used,
+                       kiln_report *report) {
+    scratch s = {array_alloc(w->material_count, sizeof *s.list), array_alloc(scene->mesh_count, sizeof *s.scales),
+                 array_alloc(w->material_count, sizeof *s.sizes)};
+    bool done = s.list && s.scales && s.sizes ? build(w, scene, decoding, used, &s, report)
+                                              : report_no_memory(report, "building media");
+    free(s.list);
+    free(s.scales);
+    free(s.sizes);
+    return done;
+}

@@ -1,0 +1,14 @@
+/* render/world/media.h: the insides of solids: what lies behind the surfaces of materials with a volume. */
+#ifndef KILN_RENDER_WORLD_MEDIA_H
+#define KILN_RENDER_WORLD_MEDIA_H
+
+#include "render/world/world.h"
+
+/* Does the material bound a solid? It has a volume with a thickness, and lets light in. */
+bool material_is_solid(const kiln_material *);
+
+/* Numbers the media by rank and fills the world's tables of them; used: which materials are in the picture's world, by
+ * kiln_id. The materials' records exist. false: reported. */
+bool world_build_media(world *, const kiln_scene *, const kiln_decoding *, const bool *used, kiln_report *);
+
+#endif
