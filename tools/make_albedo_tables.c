@@ -1,8 +1,10 @@
-/* tools/make_albedo_tables.c: prints render/bsdf/albedo_table.c: directional albedos of GGX interfaces, in double.
+/* tools/make_albedo_tables.c: prints render/bsdf/albedo_table.c: directional albedos of GGX interfaces
+ * and of sheen, in double.
  *
  *     cc -O2 -I. tools/make_albedo_tables.c -lm -o make_albedo_tables && ./make_albedo_tables > render/bsdf/albedo_table.c
  *
- * Each entry is the mean of single-scattering weights over visible normals (Heitz 2018), on a rank-1 lattice. */
+ * Each entry of an interface is the mean of single-scattering weights over visible normals (Heitz 2018), on a rank-1
+ * lattice; sheen's are midpoint sums over directions. */
 #include <math.h>
 #include <stdio.h>
 
@@ -139,6 +141,59 @@ static void print_interface(void) {
     printf("};\n");
 }
 
+/* lobes/sheen.h in double; l(x) and Λ of KHR_materials_sheen. */
+static double sheen_l(double x, double alpha) {
+    double t = (1 - alpha) * (1 - alpha), a = 21.5473 + (25.3245 - 21.5473) * t, b = 3.82987 + (3.32435 - 3.82987) * t;
+    double c = 0.19823 + (0.16801 - 0.19823) * t, d = -1.97760 + (-1.27393 + 1.97760) * t;
+    return a / (1 + b * pow(x, c)) + d * x - 4.32054 + (-4.85967 + 4.32054) * t;
+}
+static double sheen_big_lambda(double c, double alpha) {
+    return exp(c < 0.5 ? sheen_l(c, alpha) : 2 * sheen_l(0.5, alpha) - sheen_l(1 - c, alpha));
+}
+
+/* Integrated over azimuths, and over elevations as sheen_sample spreads them. */
+static double sheen_albedo(double mu, double roughness) {
+    enum { ELEVATIONS = 512, AZIMUTHS = 64 };
+    double alpha = roughness * roughness, s = (double)SHEEN_SPREAD * roughness, least = (double)SHEEN_COS_MIN;
+    double so = sqrt(1 - mu * mu), co = fmax(mu, least), lo = sheen_big_lambda(co, alpha), sum = 0;
+    for (int i = 0; i < ELEVATIONS; i++) {
+        double u = (i + 0.5) / ELEVATIONS, z = s * u / (1 + s - u), r = sqrt(1 - z * z), ci = fmax(z, least), ring = 0;
+        for (int j = 0; j < AZIMUTHS; j++) {
+            double phi = M_PI * (j + 0.5) / AZIMUTHS, x = so + r * cos(phi), y = r * sin(phi), side = x * x + y * y;
+            ring += pow(side / (side + (mu + z) * (mu + z)), 0.5 / alpha) / AZIMUTHS;
+        }
+        double visibility = 0.25 / ((1 + lo + sheen_big_lambda(ci, alpha)) * co * ci);
+        sum += (2 + 1 / alpha) * ring * visibility * z * (s + z) * (s + z) / (s * (1 + s)) / ELEVATIONS;
+    }
+    return sum * fmin(roughness / (double)SHEEN_ROUGHNESS_FULL, 1);
+}
+
+static double sheen_row_roughness(int row) { return (row + 1.0) / ALBEDO_SHEEN_ROUGHNESS; }
+static double sheen_mu(double t, double roughness) {
+    double q = t * t * t * t, s = (double)SHEEN_SPREAD * roughness;
+    return fmin(s * q / (1 + s - q), 1);
+}
+
+static void print_sheen(void) {
+    double mean[ALBEDO_SHEEN_ROUGHNESS];
+    printf("\nconst float albedo_sheen_table[ALBEDO_SHEEN * ALBEDO_SHEEN_ROUGHNESS] = {\n");
+    for (int j = 0; j < ALBEDO_SHEEN_ROUGHNESS; j++) {
+        enum { N = 256 };
+        double roughness = sheen_row_roughness(j), before = 0;
+        for (int i = 0; i < ALBEDO_SHEEN; i++)
+            put(sheen_albedo(sheen_mu((double)i / (ALBEDO_SHEEN - 1), roughness), roughness));
+        mean[j] = 0;
+        for (int i = 0; i < N; i++) { /* 2 ∫ E mu dmu */
+            double mu = sheen_mu((i + 1.0) / N, roughness);
+            mean[j] += sheen_albedo(sheen_mu((i + 0.5) / N, roughness), roughness) * (mu * mu - before * before);
+            before = mu;
+        }
+    }
+    printf("};\n\nconst float albedo_sheen_mean_table[ALBEDO_SHEEN_ROUGHNESS] = {\n");
+    for (int j = 0; j < ALBEDO_SHEEN_ROUGHNESS; j++) put(mean[j]);
+    printf("};\n");
+}
+
 int main(void) {
     printf("/* Printed by tools/make_albedo_tables.c. */\n#include \"render/bsdf/albedo.h\"\n\n");
     print_rows("albedo_full_table", FULL, ALBEDO_GRAZING, "ALBEDO_SLICE");
@@ -146,5 +201,6 @@ int main(void) {
     print_rows("albedo_schlick_table", SCHLICK, ALBEDO_SHAPE, "ALBEDO_SHAPE * ALBEDO_ROUGHNESS");
     print_means("albedo_schlick_mean_table", SCHLICK);
     print_interface();
+    print_sheen();
     return 0;
 }

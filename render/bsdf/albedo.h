@@ -1,4 +1,4 @@
-/* render/bsdf/albedo.h: directional albedos of GGX interfaces, from tables: what energy compensation needs.
+/* render/bsdf/albedo.h: directional albedos of GGX interfaces and of sheen, for energy compensation, from tables.
  *
  * A table runs over a coordinate of cos θ and over perceptual roughness, bilinear. Two coordinates serve:
  * near grazing everything happens at cos θ ~ alpha, hence t = sqrt(cos θ (1 + alpha)/(cos θ + alpha)); the Fresnel
@@ -9,6 +9,8 @@
 
 #include <math.h>
 #include <stdint.h>
+
+#include "render/bsdf/lobes/sheen.h"
 
 enum { ALBEDO_GRAZING = 24, ALBEDO_SHAPE = 16, ALBEDO_ROUGHNESS = 16, ALBEDO_IORS = 64 };
 enum { ALBEDO_SLICE = ALBEDO_GRAZING * ALBEDO_ROUGHNESS };
@@ -90,6 +92,27 @@ static inline float albedo_interface(albedo_node ior, float mu, float alpha, alb
 }
 static inline float albedo_interface_mean(albedo_node ior, albedo_node roughness) {
     return albedo_bilinear(albedo_interface_mean_table, ALBEDO_ROUGHNESS, roughness, ior);
+}
+
+/* Of a white sheen lobe (lobes/sheen.h). Rows of roughness k/25 have one at each end and one at the kink,
+ * SHEEN_ROUGHNESS_FULL; columns run over (z (1 + s)/(z + s))^¼, s = SHEEN_SPREAD roughness, the lobe's own elevations
+ * and down to the horizon, where Λ's fit falls as a small power. */
+enum { ALBEDO_SHEEN = 32, ALBEDO_SHEEN_ROUGHNESS = 25 };
+extern const float albedo_sheen_table[ALBEDO_SHEEN * ALBEDO_SHEEN_ROUGHNESS];
+extern const float albedo_sheen_mean_table[ALBEDO_SHEEN_ROUGHNESS];
+
+static inline albedo_node albedo_sheen_node(float roughness) {
+    float unit = (roughness - SHEEN_ROUGHNESS_MIN) * (1.0f / (1.0f - SHEEN_ROUGHNESS_MIN));
+    return albedo_node_of(unit, ALBEDO_SHEEN_ROUGHNESS);
+}
+
+static inline float albedo_sheen(float mu, albedo_node roughness) {
+    float s = SHEEN_SPREAD / ALBEDO_SHEEN_ROUGHNESS * ((float)(roughness.index + 1) + roughness.fraction);
+    float t = sqrtf(sqrtf(mu * (1.0f + s) / (mu + s)));
+    return albedo_bilinear(albedo_sheen_table, ALBEDO_SHEEN, albedo_node_of(t, ALBEDO_SHEEN), roughness);
+}
+static inline float albedo_sheen_mean(albedo_node roughness) {
+    return albedo_linear(albedo_sheen_mean_table, roughness);
 }
 
 #endif
