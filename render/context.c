@@ -68,7 +68,8 @@ bool context_make(const kiln_renderer *r, const kiln_render_options *o, const ki
                         .max_depth = o->max_depth == KILN_DEPTH_ZERO ? 0 : o->max_depth ? o->max_depth : 64,
                         .background = o->background,
                         .background_color = v3_load(o->background_color),
-                        .aovs = d->aovs & (1u << KILN_AOV_ALBEDO | 1u << KILN_AOV_NORMAL | 1u << KILN_AOV_DEPTH)};
+                        .aovs = d->aovs & FILM_SUMMED_AOVS,
+                        .handles = d->mattes || d->aovs & (1u << KILN_AOV_OBJECT | 1u << KILN_AOV_MATERIAL)};
     pixel_filter_make(&c->filter, o->filter, o->filter_width);
     if (!camera_make(r->world, view, d->width, d->height, &c->camera, report)) return false;
     c->media = camera_media(r->world, &c->camera);

@@ -14,4 +14,12 @@ struct kiln_renderer {
 /* Checks the options; false: reported. The context borrows from the renderer. */
 bool context_make(const kiln_renderer *, const kiln_render_options *, const kiln_film *, path_context *, kiln_report *);
 
+/* naming.c: what mattes of the film call things. false: reported. */
+bool context_name_mattes(const kiln_renderer *, kiln_film *, kiln_report *);
+
+/* parts.c: where the scene's light belongs in the film, which learns whether it holds all of it. false: reported. The
+ * caller frees the plan in either case. */
+bool context_plan_parts(const kiln_renderer *, kiln_film *, path_parts_plan *, kiln_report *);
+void context_free_parts(path_parts_plan *);
+
 #endif

@@ -16,6 +16,10 @@ bool pass_make_workers(pass *p) {
         pass_worker *w = &p->workers[t];
         w->batch = aligned_array(1, sizeof *w->batch);
         w->samples = array_alloc(BATCH_PATHS, sizeof *w->samples);
+        if (w->batch && p->context->parts) {
+            w->batch->parts = aligned_array(1, path_parts_bytes(p->context->parts));
+            if (!w->batch->parts) return false;
+        }
         for (int d = 0; d < KILN_DISCARD_COUNT; d++) w->discarded_first[d] = UINT64_MAX;
         if (!w->batch || !w->samples) return false;
     }
@@ -24,6 +28,7 @@ bool pass_make_workers(pass *p) {
 
 void pass_free_workers(pass *p) {
     for (uint32_t t = 0; p->workers && t < p->threads; t++) {
+        if (p->workers[t].batch) free(p->workers[t].batch->parts);
         free(p->workers[t].batch);
         free(p->workers[t].samples);
     }
@@ -43,7 +48,7 @@ static void discard(const pass *p, pass_worker *w, kiln_discard cause, const pat
     if (place < w->discarded_first[cause]) w->discarded_first[cause] = place;
 }
 
-/* A radiance that the film can hold; what is not one is counted and black. */
+/* A radiance that the film can hold; what is not one is counted and black, and so are its parts. */
 static void check_radiance(const pass *p, pass_worker *w, const path_sample *at, film_sample *s) {
     bool fits = true, real = true;
     for (int k = 0; k < 3; k++) {
@@ -53,16 +58,22 @@ static void check_radiance(const pass *p, pass_worker *w, const path_sample *at,
     if (real && fits) return;
     discard(p, w, real ? KILN_DISCARD_OVERFLOW : KILN_DISCARD_RADIANCE, at);
     s->radiance[0] = s->radiance[1] = s->radiance[2] = 0.0f;
+    s->parts = NULL;
 }
 
 /* The same for what else it says of the first surface. */
 static void check_aovs(const pass *p, pass_worker *w, const path_sample *at, film_sample *s) {
-    bool fits = !p->film->aovs[KILN_AOV_DEPTH] || fixed_fits(s->depth);
-    for (int k = 0; k < 3; k++) fits = fits && fixed_fits(s->albedo[k]) && fixed_fits(s->normal[k]);
+    const fixed *const *held = (const fixed *const *)p->film->aovs;
+    bool fits = !held[KILN_AOV_DEPTH] || fixed_fits(s->depth);
+    fits = fits && (!held[KILN_AOV_UV] || (fixed_fits(s->uv[0]) && fixed_fits(s->uv[1])));
+    for (int k = 0; k < 3; k++)
+        fits = fits && fixed_fits(s->albedo[k]) && fixed_fits(s->normal[k]) &&
+               (!held[KILN_AOV_POSITION] || fixed_fits(s->position[k]));
     if (fits) return;
     discard(p, w, KILN_DISCARD_OVERFLOW, at);
     s->depth = 0.0f;
-    for (int k = 0; k < 3; k++) s->albedo[k] = s->normal[k] = 0.0f;
+    s->uv[0] = s->uv[1] = 0.0f;
+    for (int k = 0; k < 3; k++) s->albedo[k] = s->normal[k] = s->position[k] = 0.0f;
 }
 
 static void store(const pass *p, pass_worker *w, uint32_t count) {
@@ -70,8 +81,11 @@ static void store(const pass *p, pass_worker *w, uint32_t count) {
     const uint32_t *crop = p->film->desc.crop;
     for (uint32_t i = 0; i < count; i++) {
         const path_sample *at = &w->samples[i];
-        film_sample s = {.radiance = {o->r[i], o->g[i], o->b[i]}, .alpha = o->alpha[i], .depth = o->depth[i]};
-        for (int k = 0; k < 3; k++) s.albedo[k] = o->albedo[k][i], s.normal[k] = o->normal[k][i];
+        film_sample s = {.radiance = {o->r[i], o->g[i], o->b[i]}, .alpha = o->alpha[i], .depth = o->depth[i],
+                         .uv = {o->uv[0][i], o->uv[1][i]}, .object = o->object[i], .material = o->material[i]};
+        for (int k = 0; k < 3; k++)
+            s.albedo[k] = o->albedo[k][i], s.normal[k] = o->normal[k][i], s.position[k] = o->position[k][i];
+        if (p->context->parts) s.parts = w->batch->parts->sums + (size_t)i * p->context->parts->count;
         if (o->refused[i]) discard(p, w, KILN_DISCARD_RAY, at);
         check_radiance(p, w, at, &s);
         if (s.alpha > 0.0f) check_aovs(p, w, at, &s);

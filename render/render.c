@@ -159,18 +159,25 @@ static void collect(run *r, kiln_stop stop, kiln_render_stats *stats) {
     if (all > 0) stats->lost_energy = lost / all;
 }
 
-bool kiln_render(const kiln_renderer *renderer, const kiln_render_options *options, kiln_film *film,
-                 kiln_render_stats *stats, kiln_report *report) {
-    const kiln_render_options *o = options ? options : &no_options;
-    path_context context;
+/* A context that holds in every detail, with the film made ready for it. */
+static bool prepare(const kiln_renderer *renderer, const kiln_render_options *o, kiln_film *film, path_context *context,
+                    path_parts_plan *parts, kiln_report *report) {
+    *parts = (path_parts_plan){0};
+    bool done = context_make(renderer, o, film, context, report) && context_name_mattes(renderer, film, report) &&
+                context_plan_parts(renderer, film, parts, report);
+    if (parts->count) context->parts = parts;
+    return done;
+}
+
+static bool render(const kiln_renderer *renderer, const kiln_render_options *o, const path_context *context,
+                   kiln_film *film, kiln_render_stats *stats, kiln_report *report) {
     run r = {.options = o, .film = film, .started = clock_seconds(), .error = -1,
              .scale = o->error_scale > 0 ? o->error_scale : 1};
-    if (!context_make(renderer, o, film, &context, report)) return false;
     bool any_rule = o->spp || o->noise > 0 || o->budget_seconds > 0;
     r.spp_limit = o->spp ? o->spp : any_rule ? FIXED_SAMPLES_MAX : 64;
     r.spp = r.spp_before = kiln_film_spp(film);
     r.samples_before = kiln_film_samples(film);
-    r.pass = (pass){.context = &context, .film = film, .threads = renderer->threads, .cancel = o->cancel, .tick = tick,
+    r.pass = (pass){.context = context, .film = film, .threads = renderer->threads, .cancel = o->cancel, .tick = tick,
                     .tick_user = &r, .shuffle = o->tile_shuffle,
                     .batch_size = o->batch_size && o->batch_size < BATCH_PATHS ? o->batch_size : BATCH_PATHS,
                     .deadline = o->budget_seconds > 0 ? r.started + o->budget_seconds : 0};
@@ -185,5 +192,16 @@ bool kiln_render(const kiln_renderer *renderer, const kiln_render_options *optio
         if (o->progress) report_progress(&r);
     }
     pass_free_workers(&r.pass);
+    return done;
+}
+
+bool kiln_render(const kiln_renderer *renderer, const kiln_render_options *options, kiln_film *film,
+                 kiln_render_stats *stats, kiln_report *report) {
+    const kiln_render_options *o = options ? options : &no_options;
+    path_context context;
+    path_parts_plan parts;
+    bool done = prepare(renderer, o, film, &context, &parts, report) &&
+                render(renderer, o, &context, film, stats, report);
+    context_free_parts(&parts);
     return done;
 }

@@ -22,7 +22,8 @@ bool kiln_scene_add_instance(kiln_scene *scene, const kiln_instance_desc *desc, 
     if (!check_time_count(instance.time_count, &place.where, report)) return false;
     mat4 *transforms = ARENA_ARRAY(&scene->arena, mat4, instance.time_count);
     instance.name = arena_string(&scene->arena, desc->name);
-    if (!transforms || !instance.name) return report_no_memory(report, "building the scene");
+    instance.asset = arena_string(&scene->arena, desc->asset);
+    if (!transforms || !instance.name || !instance.asset) return report_no_memory(report, "building the scene");
     if (desc->transforms) memcpy(transforms, desc->transforms, instance.time_count * sizeof *transforms);
     else transforms[0] = mat4_identity();
     instance.transforms = transforms;

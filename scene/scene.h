@@ -13,7 +13,7 @@
 #include "scene/mesh.h"
 
 typedef struct kiln_instance {
-    const char *name;
+    const char *name, *asset; /* "": none */
     kiln_id mesh;
     uint32_t time_count; /* ≥ 1 */
     const mat4 *transforms;

@@ -8,7 +8,8 @@ static bool add_instance(gltf_reader *r, const gltf_placement *p, const mat4 *tr
     kiln_id mesh = r->meshes[node->mesh];
     if (!mesh) return true; /* it had no surface */
     kiln_where where = where_item(&r->file, "nodes", p->node);
-    kiln_instance_desc desc = {.name = *node->name ? node->name : r->document.meshes[node->mesh].name, .mesh = mesh,
+    kiln_instance_desc desc = {.name = *node->name ? node->name : r->document.meshes[node->mesh].name,
+                               .asset = r->document.nodes[p->root].name, .mesh = mesh,
                                .transforms = transform->m};
     scene_locate(r->scene, &where);
     bool added = kiln_scene_add_instance(r->scene, &desc, NULL, r->report);

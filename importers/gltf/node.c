@@ -98,14 +98,16 @@ static bool add_light(gltf_reader *r, int index, const gltf_node *n, const mat4 
 /* A node on its way to the scene; its parent's transform comes along. */
 typedef struct visit {
     int node;
+    size_t root;
     uint32_t parent; /* in the list that the scene keeps */
     bool visible;
     mat4 transform; /* of the parent */
 } visit;
 
-/* *visible: that of the parent, then that of the node and its descendants (KHR_node_visibility). Cameras need not be
+/* v->visible: that of the parent, then that of the node and its descendants (KHR_node_visibility). Cameras need not be
  * visible. */
-static bool enter_node(gltf_reader *r, int index, const mat4 *transform, bool *visible) {
+static bool enter_node(gltf_reader *r, visit *v, const mat4 *transform) {
+    const int index = v->node;
     const gltf_document *d = &r->document;
     const gltf_node *n = &d->nodes[index];
     kiln_where node = where_item(&r->file, "nodes", (size_t)index), list = where_key(&node, "extensions"),
@@ -117,9 +119,9 @@ static bool enter_node(gltf_reader *r, int index, const mat4 *transform, bool *v
         !gltf_check_key(r, light, d->light_count, "light", &punctual, "light"))
         return false;
     if (n->camera >= 0 && !add_camera(r, n, transform)) return false;
-    *visible &= shown;
-    if (!*visible) return true;
-    if (n->mesh >= 0) r->placements[r->placement_count++] = (gltf_placement){(size_t)index, *transform};
+    v->visible &= shown;
+    if (!v->visible) return true;
+    if (n->mesh >= 0) r->placements[r->placement_count++] = (gltf_placement){(size_t)index, v->root, *transform};
     return light < 0 || add_light(r, light, n, transform);
 }
 
@@ -139,16 +141,16 @@ static bool keep_node(gltf_reader *r, const gltf_node *n, const visit *v, const 
 /* Depth first, first child first. Trees were checked: each node is pushed once, so count entries are enough. */
 static bool walk(gltf_reader *r, const int *roots, size_t root_count, visit *stack) {
     size_t top = 0;
-    for (size_t i = root_count; i-- > 0;) stack[top++] = (visit){roots[i], SCENE_NO_PARENT, true, mat4_identity()};
+    for (size_t i = root_count; i-- > 0;) stack[top++] = (visit){roots[i], (size_t)roots[i], SCENE_NO_PARENT, true, mat4_identity()};
     while (top) {
         visit v = stack[--top];
         const gltf_node *n = &r->document.nodes[v.node];
         const kiln_scene_counts before = {.cameras = r->scene->camera_count, .lights = r->scene->light_count};
         uint32_t place = r->scene->source.node_count;
         mat4 local = local_transform(n), transform = mat4_mul(v.transform, local);
-        if (!enter_node(r, v.node, &transform, &v.visible) || !keep_node(r, n, &v, &local, before)) return false;
+        if (!enter_node(r, &v, &transform) || !keep_node(r, n, &v, &local, before)) return false;
         for (size_t c = n->children.count; c-- > 0;)
-            stack[top++] = (visit){n->children.items[c], place, v.visible, transform};
+            stack[top++] = (visit){n->children.items[c], v.root, place, v.visible, transform};
     }
     return true;
 }

@@ -14,7 +14,7 @@
 
 /* A mesh of the file at a place in the world. */
 typedef struct gltf_placement {
-    size_t node;
+    size_t node, root; /* root: the node at the top of the hierarchy, above it or itself */
     mat4 transform;
 } gltf_placement;
 

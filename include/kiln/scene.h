@@ -27,6 +27,7 @@ typedef struct kiln_scene kiln_scene;
 /* A mesh placed in the world. */
 typedef struct kiln_instance_desc {
     const char *name;
+    const char *asset; /* the name of what it is a part of, for mattes; NULL or "": its own */
     kiln_id mesh;
     uint32_t time_count;      /* transforms at equidistant times of the shutter; 0 or 1: at rest. The renderer shows the
                                  first, and warns */
@@ -97,6 +98,12 @@ KILN_API bool kiln_scene_add_instance(kiln_scene *, const kiln_instance_desc *, 
 KILN_API bool kiln_scene_add_light(kiln_scene *, const kiln_light *, kiln_id *id, kiln_report *);
 KILN_API bool kiln_scene_add_camera(kiln_scene *, const kiln_camera *, kiln_id *id, kiln_report *);
 KILN_API bool kiln_scene_set_environment(kiln_scene *, const kiln_environment *, kiln_report *);
+
+/* Where the light of a scene comes from, by name: punctual lights, materials that shine (unlit ones too) and
+ * "environment", which is everything around the scene. Equal names are one group; '.', ',' and ':', which mean
+ * something in names of layers and in lists, are taken for '_'; what has no name is "light_7" or "material_7", by its
+ * handle. In that order, each name once. Borrowed: the names live in *groups, to be freed by free(). */
+KILN_API bool kiln_scene_light_groups(const kiln_scene *, const char *const **groups, uint32_t *count, kiln_report *);
 
 typedef struct kiln_bounds { double min[3], max[3]; } kiln_bounds; /* empty: min > max */
 

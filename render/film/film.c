@@ -12,15 +12,17 @@ static const struct { uint32_t channels; } aov_rows[KILN_AOV_COUNT] = {
 #undef KILN_AOV_ROW
 };
 
-/* ALPHA, SAMPLES and ERROR are known from counts and replicates. */
-static bool is_summed(int aov) { return aov == KILN_AOV_ALBEDO || aov == KILN_AOV_NORMAL || aov == KILN_AOV_DEPTH; }
+/* ALPHA, SAMPLES and ERROR are known from counts and replicates, OBJECT and MATERIAL from ballots. */
+static bool is_summed(int aov) { return FILM_SUMMED_AOVS >> aov & 1; }
+/* Averaged over the samples that hit: what has no meaning where nothing is. */
+#define AOVS_OF_HITS (1u << KILN_AOV_DEPTH | 1u << KILN_AOV_POSITION | 1u << KILN_AOV_UV)
 
 static bool allocate(kiln_film *f) {
     size_t pixels = (size_t)f->width * f->height;
     f->pixels = aligned_array(pixels, sizeof *f->pixels);
     f->counts = aligned_array(pixels, sizeof *f->counts);
     f->hits = aligned_array(pixels, sizeof *f->hits);
-    bool done = f->pixels && f->counts && f->hits;
+    bool done = f->pixels && f->counts && f->hits && film_allocate_ballots(f) && film_allocate_parts(f);
     for (int a = 0; a < KILN_AOV_COUNT; a++)
         if (f->desc.aovs & 1u << a && is_summed(a))
             done = done && (f->aovs[a] = aligned_array(pixels * aov_rows[a].channels, sizeof(fixed)));
@@ -36,22 +38,23 @@ static bool check(const kiln_film_desc *d, kiln_report *report) {
         return report_error(report, KILN_CODE_USAGE, &where, "give X0,Y0,X1,Y1 within the picture, X0 < X1, Y0 < Y1",
                             "the crop %u,%u,%u,%u is not a part of %u x %u pixels", d->crop[0], d->crop[1], d->crop[2],
                             d->crop[3], d->width, d->height);
-    if (d->aovs >> KILN_AOV_COUNT)
-        return report_error(report, KILN_CODE_USAGE, &where, NULL, "aovs 0x%x are unknown", d->aovs);
+    if (d->aovs >> KILN_AOV_COUNT || d->mattes >> KILN_MATTE_COUNT)
+        return report_error(report, KILN_CODE_USAGE, &where, NULL, "aovs 0x%x or mattes 0x%x are unknown", d->aovs,
+                            d->mattes);
     return true;
 }
 
-static uint64_t bytes_per_pixel(uint32_t aovs) {
-    uint64_t each = sizeof(film_pixel) + 2 * sizeof(uint32_t);
+static uint64_t bytes_per_pixel(const kiln_film_desc *d) {
+    uint64_t each = sizeof(film_pixel) + 2 * sizeof(uint32_t) + film_ballot_bytes(d) + film_part_bytes(d);
     for (int a = 0; a < KILN_AOV_COUNT; a++)
-        if (aovs & 1u << a && is_summed(a)) each += aov_rows[a].channels * sizeof(fixed);
+        if (d->aovs & 1u << a && is_summed(a)) each += aov_rows[a].channels * sizeof(fixed);
     return each;
 }
 
 uint64_t kiln_film_size(const kiln_film_desc *d) {
     bool cropped = d->crop[2] > d->crop[0] && d->crop[3] > d->crop[1];
     uint64_t width = cropped ? d->crop[2] - d->crop[0] : d->width, height = cropped ? d->crop[3] - d->crop[1] : d->height;
-    return width * height * bytes_per_pixel(d->aovs);
+    return width * height * bytes_per_pixel(d);
 }
 
 bool kiln_film_create(const kiln_film_desc *desc, kiln_film **film, kiln_report *report) {
@@ -64,9 +67,9 @@ bool kiln_film_create(const kiln_film_desc *desc, kiln_film **film, kiln_report 
     f->desc = d;
     f->width = d.crop[2] - d.crop[0];
     f->height = d.crop[3] - d.crop[1];
-    if (!allocate(f)) {
+    if (!film_make_parts(f, &d, report) || !(allocate(f) || report_no_memory(report, "making the film"))) {
         kiln_film_destroy(f);
-        return report_no_memory(report, "making the film");
+        return false;
     }
     *film = f;
     return true;
@@ -78,6 +81,8 @@ void kiln_film_destroy(kiln_film *f) {
     free(f->counts);
     free(f->hits);
     for (int a = 0; a < KILN_AOV_COUNT; a++) free(f->aovs[a]);
+    film_free_ballots(f);
+    film_free_parts(f);
     free(f);
 }
 
@@ -91,11 +96,16 @@ void film_add(kiln_film *f, uint32_t x, uint32_t y, const film_sample *s) {
     size_t pixel = (size_t)y * f->width + x;
     uint32_t replicate = f->counts[pixel]++ & (KILN_REPLICATES - 1);
     for (int k = 0; k < 3; k++) f->pixels[pixel].sum[replicate][k] += fixed_from_float(s->radiance[k]);
+    for (uint32_t p = 0; s->parts && p < f->parts.count; p++)
+        for (int k = 0; k < 3; k++) f->parts.items[p].sums[pixel][k] += s->parts[p][k];
     if (!(s->alpha > 0.0f)) return;
     f->hits[pixel]++;
     add_to(f->aovs[KILN_AOV_ALBEDO], pixel, s->albedo, 3);
     add_to(f->aovs[KILN_AOV_NORMAL], pixel, s->normal, 3);
     add_to(f->aovs[KILN_AOV_DEPTH], pixel, &s->depth, 1);
+    add_to(f->aovs[KILN_AOV_POSITION], pixel, s->position, 3);
+    add_to(f->aovs[KILN_AOV_UV], pixel, s->uv, 2);
+    film_count(f, pixel, s);
 }
 
 void film_read_pixel(const kiln_film *f, size_t pixel, double mean[3], double variance[3]) {
@@ -122,23 +132,32 @@ void kiln_film_beauty(const kiln_film *f, float *rgb) {
     }
 }
 
+/* Of one pixel. */
+static void read_aov(const kiln_film *f, kiln_aov aov, size_t pixel, float *values) {
+    uint32_t n = f->counts[pixel], hits = f->hits[pixel], over = AOVS_OF_HITS >> aov & 1 ? hits : n;
+    switch (aov) {
+    case KILN_AOV_SAMPLES: values[0] = (float)n; return;
+    case KILN_AOV_ALPHA: values[0] = n ? (float)((double)hits / n) : 0.0f; return;
+    case KILN_AOV_OBJECT: values[0] = hits ? (float)film_most(f, FILM_OBJECT, pixel) : 0.0f; return;
+    case KILN_AOV_MATERIAL: values[0] = hits ? (float)film_most(f, FILM_MATERIAL, pixel) + 1.0f : 0.0f; return;
+    case KILN_AOV_ALBEDO:
+    case KILN_AOV_NORMAL:
+    case KILN_AOV_DEPTH:
+    case KILN_AOV_POSITION:
+    case KILN_AOV_UV:
+    case KILN_AOV_ERROR:
+    case KILN_AOV_COUNT: break;
+    }
+    for (size_t k = 0, channels = aov_rows[aov].channels; k < channels; k++)
+        values[k] = over ? (float)(fixed_to_double(f->aovs[aov][pixel * channels + k]) / over) : 0.0f;
+}
+
 bool kiln_film_aov(const kiln_film *f, kiln_aov aov, float *values) {
     if (!(f->desc.aovs & 1u << aov)) return false;
     size_t pixels = (size_t)f->width * f->height, channels = aov_rows[aov].channels;
-    if (aov == KILN_AOV_ERROR) {
-        film_error_map(f, values);
-        return true;
-    }
-    for (size_t i = 0; i < pixels; i++) {
-        uint32_t n = f->counts[i];
-        if (aov == KILN_AOV_SAMPLES) values[i] = (float)n;
-        else if (aov == KILN_AOV_ALPHA) values[i] = n ? (float)((double)f->hits[i] / n) : 0.0f;
-        else {
-            uint32_t over = aov == KILN_AOV_DEPTH ? f->hits[i] : n;
-            for (size_t k = 0; k < channels; k++)
-                values[i * channels + k] = over ? (float)(fixed_to_double(f->aovs[aov][i * channels + k]) / over) : 0.0f;
-        }
-    }
+    if (aov == KILN_AOV_ERROR) film_error_map(f, values);
+    else
+        for (size_t i = 0; i < pixels; i++) read_aov(f, aov, i, values + i * channels);
     return true;
 }
 

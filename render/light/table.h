@@ -23,6 +23,7 @@ typedef struct light {
     float one_minus_cos;  /* DISTANT: of the half angle; 0: parallel */
     uint32_t varies;      /* TRIANGLE with an emission texture or partial coverage: 1 + its number; else 0 */
     float error;          /* TRIANGLE: bound on the rounding error of a point on it */
+    uint32_t owner;       /* TRIANGLE: its material; ENVIRONMENT: none; else the scene's light, by handle */
 } light;
 
 /* Emission from all around: a latitude-longitude picture, bilinear, importance-sampled by texel. */

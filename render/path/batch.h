@@ -122,18 +122,22 @@ typedef struct path_output {
     float r[BATCH_PATHS + 1], g[BATCH_PATHS + 1], b[BATCH_PATHS + 1];
     float beyond_r[BATCH_PATHS + 1], beyond_g[BATCH_PATHS + 1], beyond_b[BATCH_PATHS + 1]; /* found past the depth limit */
     float alpha[BATCH_PATHS + 1], depth[BATCH_PATHS + 1];
-    float albedo[3][BATCH_PATHS + 1], normal[3][BATCH_PATHS + 1];
+    float albedo[3][BATCH_PATHS + 1], normal[3][BATCH_PATHS + 1], position[3][BATCH_PATHS + 1], uv[2][BATCH_PATHS + 1];
+    uint32_t object[BATCH_PATHS + 1], material[BATCH_PATHS + 1]; /* handles */
     uint8_t refused[BATCH_PATHS + 1]; /* Embree was spared a ray of this sample */
 } path_output;
 
 /* Lanes of one material kind. */
 typedef struct lane_range { uint32_t first, end; } lane_range;
 
+struct path_parts;
+
 typedef struct batch {
     path_state states[2]; /* the current one, and where it moves to */
     path_hit hits[2];
     path_scratch scratch;
     path_output out;
+    struct path_parts *parts; /* NULL: nobody wants them */
     uint32_t current; /* of states and hits */
     uint32_t n;       /* lanes, a multiple of LANE_GROUP */
     uint32_t depth;   /* scattering events so far */

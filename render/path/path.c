@@ -26,8 +26,9 @@ void STAGE(trace_samples)(const path_context *c, const path_sample *samples, uin
         STAGE(sort)(c, b);
         look_at_surfaces(c, b);
         if (w->absorbs) STAGE(absorb)(c, b);
-        if (c->aovs && b->depth == 0) STAGE(aovs)(c, b);
+        if ((c->aovs || c->handles) && b->depth == 0) STAGE(aovs)(c, b);
         if (w->emits) STAGE(emission)(c, b);
+        if (w->emits && c->parts) STAGE(part_emission)(c, b);
         if (b->depth >= c->max_depth) {
             STAGE(limit)(c, b);
             STAGE(sort)(c, b);
@@ -37,7 +38,9 @@ void STAGE(trace_samples)(const path_context *c, const path_sample *samples, uin
         if (c->light_cdf) {
             STAGE(light)(c, b);
             STAGE(connect)(c, b);
+            if (c->parts) STAGE(part_light)(c, b);
         }
+        if (c->parts && b->depth == 0) STAGE(part_scatter)(c, b);
         STAGE(scatter)(c, b);
         STAGE(close)(c, b);
         b->depth++;

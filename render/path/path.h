@@ -5,6 +5,7 @@
 #include "kiln/render.h"
 #include "render/path/batch.h"
 #include "render/path/camera.h"
+#include "render/path/parts.h"
 #include "render/sample/filter.h"
 #include "render/sample/sampler.h"
 
@@ -26,7 +27,9 @@ typedef struct path_context {
     uint32_t roulette_min;
     kiln_background background;
     vec3 background_color;
-    uint32_t aovs;
+    uint32_t aovs;    /* bits of KILN_AOV that the paths see */
+    const path_parts_plan *parts; /* NULL: the film holds none */
+    bool handles;     /* of the first surface's instance and material are wanted */
 } path_context;
 
 /* One sample of one pixel. */

@@ -1,5 +1,6 @@
 #include "render/path/lanes.h"
 #include "render/path/stages.h"
+#include "render/world/lookup.h"
 
 KERNEL void write_albedo(unsigned mask, batch *b, lane_range lanes) {
     const path_state *s = batch_state(b);
@@ -8,6 +9,31 @@ KERNEL void write_albedo(unsigned mask, batch *b, lane_range lanes) {
         shading p = lane_shading(mask, s, &b->scratch, i);
         vec3 a = bsdf_albedo(mask, &p.bsdf);
         o->albedo[0][s->slot[i]] = a.x, o->albedo[1][s->slot[i]] = a.y, o->albedo[2][s->slot[i]] = a.z;
+    }
+}
+
+/* Double on the way: the scene's origin may be far from it. */
+static void write_places(const path_context *c, batch *b) {
+    const path_state *s = batch_state(b);
+    const path_scratch *x = &b->scratch;
+    path_output *o = &b->out;
+    dvec3 center = c->world->center;
+    double metres = 1.0 / c->world->scale;
+    for (uint32_t i = 0; i < b->n; i++) {
+        uint32_t slot = s->slot[i];
+        o->position[0][slot] = (float)(center.x + (double)x->px[i] * metres);
+        o->position[1][slot] = (float)(center.y + (double)x->py[i] * metres);
+        o->position[2][slot] = (float)(center.z + (double)x->pz[i] * metres);
+        o->uv[0][slot] = x->tu[i], o->uv[1][slot] = x->tv[i];
+    }
+}
+
+static void write_handles(const path_context *c, batch *b) {
+    const path_state *s = batch_state(b);
+    const path_hit *h = batch_hit(b);
+    for (uint32_t i = 0; i < b->n; i++) {
+        b->out.object[s->slot[i]] = lookup_object(c->world, h->triangle[i], h->instance[i]);
+        b->out.material[s->slot[i]] = b->scratch.material[i];
     }
 }
 
@@ -23,6 +49,8 @@ void STAGE(aovs)(const path_context *c, batch *b) {
         vec3 from = v3_sub(v3(x->px[i], x->py[i], x->pz[i]), c->camera.origin);
         o->depth[slot] = v3_dot(from, axis) * metres;
     }
+    if (c->handles) write_handles(c, b);
+    if (c->aovs & (1u << KILN_AOV_POSITION | 1u << KILN_AOV_UV)) write_places(c, b);
     if (!(c->aovs & 1u << KILN_AOV_ALBEDO)) return;
     write_albedo(SHADING_MASK_DIFFUSE, b, b->kinds[KIND_DIFFUSE]);
     write_albedo(SHADING_MASK_GLOSSY, b, b->kinds[KIND_GLOSSY]);

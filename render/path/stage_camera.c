@@ -5,6 +5,7 @@ void STAGE(camera)(const path_context *c, const path_sample *samples, uint32_t c
     path_scratch *x = &b->scratch;
     b->n = lanes_round_up(count);
     b->depth = 0;
+    if (c->parts) parts_begin(c->parts, b->parts, count);
     for (uint32_t i = 0; i < b->n; i++) {
         const path_sample *sample = &samples[i < count ? i : 0];
         sample_point p = sample_point_make(c->seed, sample->y << 16 | sample->x, sample->n);

@@ -2,25 +2,26 @@
 #include "render/path/estimate.h"
 #include "render/path/stages.h"
 
+static void add(path_state *s, uint32_t i, vec3 radiance) {
+    s->lr[i] += s->tr[i] * radiance.x;
+    s->lg[i] += s->tg[i] * radiance.y;
+    s->lb[i] += s->tb[i] * radiance.z;
+}
+
 /* Suns of a visible size: their disk is seen by every ray that leaves the scene into it. */
-static vec3 sun_radiance(const path_context *c, vec3 d, float pdf) {
+static void add_suns(const path_context *c, batch *b, uint32_t i) {
     const light_table *t = &c->world->lights;
-    vec3 sum = v3_splat(0.0f);
+    path_state *s = batch_state(b);
+    vec3 d = {s->dx[i], s->dy[i], s->dz[i]};
     for (uint32_t k = 0; k < t->distant_count; k++) {
         const light *l = &t->lights[t->distant[k]];
         vec3 off = v3_add(d, l->axis); /* 1 − cos = |d − toward|²/2: exact for small disks */
         if (0.5f * v3_dot(off, off) > l->one_minus_cos) continue;
         float probability = c->light_cdf ? distribution_probability(c->light_cdf, t->distant[k]) : 0.0f;
         float light_pdf = probability * light_distant_pdf(l->one_minus_cos);
-        sum = v3_madd(sum, estimate_hit_weight(c->estimator, pdf, light_pdf), l->radiance);
+        add(s, i, v3_scale(l->radiance, estimate_hit_weight(c->estimator, s->pdf[i], light_pdf)));
+        if (c->parts) STAGE(part_found)(c, b, i, c->parts->of_light[l->owner]);
     }
-    return sum;
-}
-
-static void add(path_state *s, uint32_t i, vec3 radiance) {
-    s->lr[i] += s->tr[i] * radiance.x;
-    s->lg[i] += s->tg[i] * radiance.y;
-    s->lb[i] += s->tb[i] * radiance.z;
 }
 
 static void add_environment(const path_context *c, batch *b, uint32_t count) {
@@ -49,20 +50,22 @@ static void show_background(const path_context *c, batch *b, uint32_t count) {
     for (uint32_t k = 0; k < count; k++) add(s, b->scratch.list[k], c->background_color);
 }
 
+/* All that is not a sun counts as the environment's. */
+static void record_environment(const path_context *c, batch *b, uint32_t count) {
+    for (uint32_t k = 0; k < count; k++) STAGE(part_found)(c, b, b->scratch.list[k], c->parts->of_environment);
+}
+
 void STAGE(escape)(const path_context *c, batch *b) {
-    path_state *s = batch_state(b);
+    const path_state *s = batch_state(b);
     const path_hit *h = batch_hit(b);
     uint32_t *list = b->scratch.list, count = 0;
-    bool first = b->depth == 0;
+    bool first = b->depth == 0, surrounded = !first || c->background == KILN_BACKGROUND_ENVIRONMENT;
     for (uint32_t i = 0; first && i < b->n; i++)
         b->out.alpha[s->slot[i]] = h->triangle[i] < TRIANGLE_REFUSED ? 1.0f : 0.0f;
     for (uint32_t i = 0; i < b->n; i++)
         if (h->triangle[i] == TRIANGLE_NONE) list[count++] = i;
     if (first) show_background(c, b, count);
-    if (first && c->background != KILN_BACKGROUND_ENVIRONMENT) return;
-    if (c->world->lights.environment.present) add_environment(c, b, count);
-    for (uint32_t k = 0; c->world->lights.distant_count && k < count; k++) {
-        uint32_t i = list[k];
-        add(s, i, sun_radiance(c, v3(s->dx[i], s->dy[i], s->dz[i]), s->pdf[i]));
-    }
+    if (surrounded && c->world->lights.environment.present) add_environment(c, b, count);
+    if (c->parts) record_environment(c, b, count);
+    for (uint32_t k = 0; surrounded && c->world->lights.distant_count && k < count; k++) add_suns(c, b, list[k]);
 }

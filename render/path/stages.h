@@ -38,7 +38,7 @@ void STAGE(material)(const path_context *, batch *);
 void STAGE(boundary)(const path_context *, batch *);
 /* The shading normal: mapped, and facing wo. */
 void STAGE(normal)(const path_context *, batch *);
-/* Albedo, normal and depth of the first surface. */
+/* What the first surface is, and where. */
 void STAGE(aovs)(const path_context *, batch *);
 /* Light that the surface itself gives off, weighted as the estimator says. */
 void STAGE(emission)(const path_context *, batch *);
@@ -54,6 +54,13 @@ void STAGE(connect)(const path_context *, batch *);
 void STAGE(scatter)(const path_context *, batch *);
 /* The paths that go on close up. */
 void STAGE(close)(const path_context *, batch *);
+
+/* For films that hold parts. What lane i's path has collected by meeting light, which belongs to this part of the
+ * plan's; the same after the whole stage `emission`, after the whole of `connect`; before the first `scatter`. */
+void STAGE(part_found)(const path_context *, batch *, uint32_t i, uint8_t group);
+void STAGE(part_emission)(const path_context *, batch *);
+void STAGE(part_light)(const path_context *, batch *);
+void STAGE(part_scatter)(const path_context *, batch *);
 
 /* Radiance of a path that ends goes to its slot. */
 #define SLOT_BEYOND (1u << 31) /* the path has passed the depth limit: its radiance is counted apart */

@@ -16,6 +16,7 @@ enum { BAKE_TRIANGLES = 1 << 20 };
 /* Where an instance (baked) or a prototype is written. */
 typedef struct placement {
     const shape *shape;
+    uint32_t instance; /* baked: its handle */
     bool baked;
     mat4 to_target; /* object to render space, or to the prototype's own */
     mat4 normals;   /* normal_matrix of it */
@@ -125,11 +126,12 @@ static dvec3 mesh_center(const kiln_mesh *m) {
                    0.5 * ((double)m->min[2] + (double)m->max[2])};
 }
 
-static void add_placement(build *b, const shape *s, bool baked, mat4 m) {
+static void add_placement(build *b, const shape *s, uint32_t instance, mat4 m) {
     double longest = 0;
     for (int c = 0; c < 3; c++) longest = fmax(longest, d3_length(d3_load(m.m + 4 * c)));
     b->placements[b->placement_count++] = (placement){.shape = s,
-                                                      .baked = baked,
+                                                      .instance = instance,
+                                                      .baked = instance != 0,
                                                       .to_target = m,
                                                       .normals = normal_matrix(&m),
                                                       .tangents = 1 / longest,
@@ -141,7 +143,7 @@ static void list_placements(build *b) {
     for (uint32_t i = 0; i < b->scene->instance_count; i++) {
         const kiln_instance *instance = &b->scene->instances[i];
         if (b->presences[i] != ABSENT && !is_placed(b, i))
-            add_placement(b, &b->shapes[instance->mesh - 1], true, to_render_space(b->world, &instance->transforms[0]));
+            add_placement(b, &b->shapes[instance->mesh - 1], i + 1, to_render_space(b->world, &instance->transforms[0]));
     }
     for (uint32_t i = 0; i < b->scene->mesh_count; i++) {
         const shape *s = &b->shapes[i];
@@ -150,7 +152,7 @@ static void list_placements(build *b) {
         dvec3 c = mesh_center(s->mesh);
         m.m[12] = -c.x, m.m[13] = -c.y, m.m[14] = -c.z;
         b->prototype_centers[s->prototype] = c;
-        add_placement(b, s, false, m);
+        add_placement(b, s, 0, m);
     }
 }
 
@@ -242,6 +244,27 @@ static void place(void *context, size_t index, uint32_t thread) {
             w->triangles[3 * at + k] = p->vertex_first + shape_vertex(s, t, turned);
         }
     }
+}
+
+/* Baked placements come first in the list, and their triangles in the same order. */
+static bool list_objects(build *b) {
+    world *w = b->world;
+    world_objects *o = &w->objects;
+    while (o->baked_count < b->placement_count && b->placements[o->baked_count].baked) o->baked_count++;
+    o->baked = ARENA_ARRAY(&w->arena, uint32_t, (size_t)o->baked_count + 1);
+    for (int g = 0; g < 2; g++) o->first[g] = ARENA_ARRAY(&w->arena, uint32_t, (size_t)o->baked_count + 1);
+    o->copies = ARENA_ARRAY(&w->arena, uint32_t, w->instance_count);
+    if (!o->baked || !o->first[0] || !o->first[1] || !o->copies) return false;
+    for (uint32_t i = 0; i < o->baked_count; i++) {
+        const placement *p = &b->placements[i];
+        o->baked[i] = p->instance;
+        o->first[0][i] = p->opaque_first;
+        o->first[1][i] = p->coverage_first;
+    }
+    for (int g = 0; g < 2; g++) o->first[g][o->baked_count] = w->baked.first[g] + w->baked.count[g];
+    for (uint32_t i = 0, copy = 1; i < b->scene->instance_count; i++)
+        if (is_placed(b, i)) o->copies[copy++] = i + 1;
+    return true;
 }
 
 /* The copies that Embree places, behind copy 0. */
@@ -350,7 +373,7 @@ static bool run(build *b, uint32_t threads, kiln_report *report) {
                             "the scene has more than 4 billion vertices or triangles");
     if (!allocate(w, vertices, triangles)) return report_no_memory(report, "building geometry");
     threads_for(threads, b->placement_count, place, b);
-    return list_instances(b) || report_no_memory(report, "building geometry");
+    return (list_instances(b) && list_objects(b)) || report_no_memory(report, "building geometry");
 }
 
 bool world_build_geometry(world *w, const kiln_scene *scene, uint32_t threads, kiln_report *report) {

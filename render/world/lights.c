@@ -90,7 +90,7 @@ static light triangle_light(const world *w, const world_instance *copy, uint32_t
     vec3 p[3];
     float reach = copy->magnitude;
     light l = {.kind = LIGHT_TRIANGLE, .radiance = v3_load(m->emission),
-               .varies = lookup_emission_varies(w, triangle) ? triangle + 1 : 0,
+               .owner = w->triangle_material[triangle], .varies = lookup_emission_varies(w, triangle) ? triangle + 1 : 0,
                .two_sided = m->flags & MATERIAL_DOUBLE_SIDED || m->kind == KIND_TRANSMISSIVE ? 1.0f : 0.0f};
     for (int k = 0; k < 3; k++) {
         p[k] = world_instance_point(copy, v3_load(w->vertices[v[k]].p));
@@ -248,6 +248,7 @@ static bool add_all(build *b, uint64_t triangles) {
     t->count = (uint32_t)triangles;
     for (uint32_t i = 0; i < b->scene->light_count; i++) {
         light l = punctual_light(b, &b->scene->lights[i]);
+        l.owner = i + 1;
         if (l.kind == LIGHT_DISTANT && l.one_minus_cos > 0) t->distant[t->distant_count++] = t->count;
         b->group[t->count] = b->groups++;
         t->lights[t->count++] = l;

@@ -55,3 +55,16 @@ bool lookup_emission_varies(const world *w, uint32_t triangle) {
     const world_material *m = &w->materials[w->triangle_material[triangle]];
     return m->texture[SLOT_EMISSION] || m->flags & (MATERIAL_MASK | MATERIAL_BLEND);
 }
+
+uint32_t lookup_object(const world *w, uint32_t triangle, uint32_t copy) {
+    const world_objects *o = &w->objects;
+    if (copy) return o->copies[copy];
+    const uint32_t *first = o->first[triangle >= w->baked.first[1]];
+    uint32_t low = 0, high = o->baked_count; /* first[low] <= triangle < first[high] */
+    while (high - low > 1) {
+        uint32_t middle = low + (high - low) / 2;
+        if (first[middle] <= triangle) low = middle;
+        else high = middle;
+    }
+    return o->baked[low];
+}

@@ -17,6 +17,9 @@ float lookup_alpha(const world *, uint32_t triangle, vec2 at);
  * ray meets the surface with this probability). */
 vec3 lookup_emission(const world *, uint32_t triangle, vec2 at);
 
+/* The handle of the scene's instance whose triangle this is. */
+uint32_t lookup_object(const world *, uint32_t triangle, uint32_t copy);
+
 /* Is that other than (1, 1, 1) anywhere? */
 bool lookup_emission_varies(const world *, uint32_t triangle);
 

@@ -193,7 +193,8 @@ bool world_build_materials(world *w, const kiln_scene *scene, const kiln_decodin
     memcpy(w->curves, decoding->curve, sizeof w->curves);
     w->image_count = scene->image_count;
     w->images = array_alloc(scene->image_count, sizeof *w->images);
-    builder b = {.world = w, .scene = scene, .decoding = decoding, .images = w->images, .report = report};
+    builder b = {.world = w, .scene = scene, .decoding = decoding, .images = w->images, .report = report,
+                 .uv_set_count = 1}; /* set 0, which vertices have room for, whether textures read it or not */
     bool done = used && w->images ? build(&b, used, threads) : report_no_memory(report, "building materials");
     free(used);
     return done;

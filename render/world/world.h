@@ -37,6 +37,14 @@ typedef struct world_instance {
 /* Triangles that several instances share, or those that are baked: of Embree's geometries 0 and 1. */
 typedef struct world_prototype { uint32_t first[2], count[2]; } world_prototype;
 
+/* Which instance of the scene a hit belongs to, by handle. */
+typedef struct world_objects {
+    uint32_t *copies;              /* by world_instance; that of copy 0 is not read */
+    uint32_t *baked;               /* what was baked, in the order of its triangles … */
+    uint32_t *first[2];            /* … which begin here, opaque and with coverage: baked_count + 1 each */
+    uint32_t baked_count;
+} world_objects;
+
 typedef enum material_slot {
     SLOT_BASE, SLOT_METALLIC, SLOT_ROUGHNESS, SLOT_NORMAL, SLOT_EMISSION, SLOT_SPECULAR, SLOT_SPECULAR_COLOR,
     SLOT_TRANSMISSION, SLOT_OPACITY, SLOT_COUNT
@@ -92,6 +100,7 @@ typedef struct world {
     uint32_t instance_count;
     world_prototype baked, *prototypes;
     uint32_t prototype_count;
+    world_objects objects;
 
     world_material *materials; /* by kiln_id: 0 is the default material */
     uint32_t material_count;

@@ -129,15 +129,13 @@ static void escape(const path_context *c, path *p) {
         float pdf = chosen_probability(c, t->environment.light) * v.pdf;
         collect(p, v.radiance, estimate_hit_weight(c->estimator, p->pdf, pdf));
     }
-    vec3 suns = {0, 0, 0};
     for (uint32_t k = 0; k < t->distant_count; k++) {
         const light *l = &t->lights[t->distant[k]];
         vec3 off = v3_add(p->direction, l->axis);
         if (0.5f * v3_dot(off, off) > l->one_minus_cos) continue;
         float pdf = chosen_probability(c, t->distant[k]) * light_distant_pdf(l->one_minus_cos);
-        suns = v3_madd(suns, estimate_hit_weight(c->estimator, p->pdf, pdf), l->radiance);
+        collect(p, l->radiance, estimate_hit_weight(c->estimator, p->pdf, pdf));
     }
-    if (t->distant_count) collect(p, suns, 1);
 }
 
 static vec2 uv_of(const world *w, const hit *h, uint32_t set) {

@@ -15,7 +15,9 @@
 #include "tests/render/scenes.h"
 
 enum { WIDTH = 70, HEIGHT = 45, SPP = 6 };
-static const uint32_t all_aovs = (1u << KILN_AOV_COUNT) - 1;
+static const uint32_t all_aovs = (1u << KILN_AOV_COUNT) - 1, all_mattes = (1u << KILN_MATTE_COUNT) - 1;
+static const char *const parts[] = {"direct", "lobe:diffuse", "lobe:specular", "lightgroup:environment", "lightgroup:light_1"};
+enum { PARTS = sizeof parts / sizeof *parts };
 
 typedef struct stage { scene_builder scene; kiln_camera view; } stage;
 
@@ -42,7 +44,8 @@ static picture shoot(stage *s, uint32_t threads, const kiln_render_options *opti
     kiln_render_options o = *options;
     o.camera = &s->view;
     if (!o.spp) o.spp = SPP;
-    kiln_film_desc desc = {.width = WIDTH, .height = HEIGHT, .aovs = all_aovs};
+    kiln_film_desc desc = {.width = WIDTH, .height = HEIGHT, .aovs = all_aovs, .mattes = all_mattes, .parts = parts,
+                           .part_count = PARTS};
     if (crop) memcpy(desc.crop, crop, sizeof desc.crop);
     picture p = render_with(renderer, &o, &desc, s->scene.report);
     kiln_renderer_destroy(renderer);
@@ -57,6 +60,11 @@ static void same_film(const kiln_film *a, const kiln_film *b) {
     assert_memory_equal(a->aovs[KILN_AOV_ALBEDO], b->aovs[KILN_AOV_ALBEDO], pixels * 3 * sizeof(fixed));
     assert_memory_equal(a->aovs[KILN_AOV_NORMAL], b->aovs[KILN_AOV_NORMAL], pixels * 3 * sizeof(fixed));
     assert_memory_equal(a->aovs[KILN_AOV_DEPTH], b->aovs[KILN_AOV_DEPTH], pixels * sizeof(fixed));
+    assert_memory_equal(a->aovs[KILN_AOV_POSITION], b->aovs[KILN_AOV_POSITION], pixels * 3 * sizeof(fixed));
+    assert_memory_equal(a->aovs[KILN_AOV_UV], b->aovs[KILN_AOV_UV], pixels * 2 * sizeof(fixed));
+    for (int i = 0; i < FILM_BALLOTS; i++) assert_memory_equal(a->ballots[i], b->ballots[i], pixels * sizeof(ballot));
+    for (int i = 0; i < PARTS; i++)
+        assert_memory_equal(a->parts.items[i].sums, b->parts.items[i].sums, pixels * sizeof *a->parts.items[i].sums);
     assert_memory_equal(a->beyond, b->beyond, sizeof a->beyond);
 }
 
@@ -110,7 +118,8 @@ static void in_several_goes(void **state) {
     kiln_renderer *renderer;
     must(kiln_renderer_create(s->scene.scene, NULL, &renderer, s->scene.report), s->scene.report, "making a renderer");
     kiln_render_options o = {.camera = &s->view, .spp = 16};
-    kiln_film_desc desc = {.width = WIDTH, .height = HEIGHT, .aovs = all_aovs};
+    kiln_film_desc desc = {.width = WIDTH, .height = HEIGHT, .aovs = all_aovs, .mattes = all_mattes, .parts = parts,
+                           .part_count = PARTS};
     picture once = render_with(renderer, &o, &desc, s->scene.report);
     o.spp = 4;
     picture twice = render_with(renderer, &o, &desc, s->scene.report);
