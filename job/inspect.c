@@ -150,7 +150,10 @@ static uint64_t geometry_bytes(const kiln_mesh *m) {
 /* What a render with these options would hold. */
 static json_t *memory_estimate(const job_run *r, uint64_t textures) {
     enum { BVH_BYTES = 70 }; /* of Embree for each triangle: 60 to 70 were measured */
-    kiln_film_desc film = {.width = r->view.width, .height = r->view.height, .aovs = r->options->aovs};
+    const job_layers *layers = &r->options->layers;
+    kiln_film_desc film = {.width = r->view.width, .height = r->view.height, .aovs = layers->aovs,
+                           .mattes = layers->mattes};
+    (void)layers_parts(layers, r->scene, &film.parts, &film.part_count, r->report);
     uint64_t geometry = 0, bvh = kiln_scene_count(r->scene).triangles_unique * BVH_BYTES;
     for (uint32_t i = 0; i < r->scene->mesh_count; i++) geometry += geometry_bytes(&r->scene->meshes[i]);
     json_t *o = json_object();
@@ -159,6 +162,7 @@ static json_t *memory_estimate(const job_run *r, uint64_t textures) {
     put_count(o, "acceleration", bvh);
     put_count(o, "film", kiln_film_size(&film));
     put_count(o, "total", textures + geometry + bvh + kiln_film_size(&film));
+    free((void *)film.parts);
     return o;
 }
 

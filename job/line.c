@@ -10,18 +10,38 @@
 
 static bool needs_alpha(const job_run *r) { return r->options->background.kind != KILN_BACKGROUND_ENVIRONMENT; }
 
-/* The picture in memory at most once as floats beside the film: RGBA, and the widest AOV. */
-enum { OUTPUT_BYTES_PER_PIXEL = 32 };
+/* The picture in memory at most once as floats beside the film: RGBA and all layers. */
+static uint64_t output_bytes(const kiln_film_desc *d) {
+    uint64_t floats = 4 + 3 * (uint64_t)d->part_count;
+    for (int a = 0; a < KILN_AOV_COUNT; a++) floats += d->aovs >> a & 1 ? 3 : 0;
+    for (int m = 0; m < KILN_MATTE_COUNT; m++) floats += d->mattes >> m & 1 ? 2 * KILN_MATTE_RANKS : 0;
+    return floats * sizeof(float);
+}
+
+/* Parts of the picture have nothing behind them, and what sums to them has not either. */
+static void note_background(const job_run *r) {
+    if (r->film_desc.part_count && r->options->background.kind == KILN_BACKGROUND_COLOR)
+        report_note(r->report, KILN_CODE_IGNORED, NULL, "put the colour behind it when you have put it together",
+                    "with parts of the picture, .exr files have alpha in place of the background's colour");
+}
+
+static bool check_memory(const job_run *r, uint64_t bytes) {
+    kiln_where where = where_root("--size");
+    uint64_t machine = machine_memory();
+    if (!machine || bytes <= machine / 4 * 3) return true;
+    return report_error(r->report, job_given(r->options, size) ? KILN_CODE_USAGE : KILN_CODE_MEMORY, &where,
+                        "render a smaller picture, or crops of it, or ask for fewer layers",
+                        "%u x %u pixels need %.1f GB, and the machine has %.1f GB", r->view.width, r->view.height,
+                        (double)bytes * 1e-9, (double)machine * 1e-9);
+}
 
 bool run_film(job_run *r) {
     const job_options *o = r->options;
-    r->film_desc = (kiln_film_desc){.width = r->view.width, .height = r->view.height, .aovs = o->aovs,
-                                    .threads = o->threads};
-    memcpy(r->film_desc.crop, o->crop, sizeof o->crop);
-    if (needs_alpha(r)) r->film_desc.aovs |= 1u << KILN_AOV_ALPHA;
-    uint64_t pixels = o->crop[2] ? (uint64_t)(o->crop[2] - o->crop[0]) * (o->crop[3] - o->crop[1])
-                                 : (uint64_t)r->view.width * r->view.height;
-    uint64_t bytes = kiln_film_size(&r->film_desc) + pixels * OUTPUT_BYTES_PER_PIXEL, machine = machine_memory();
+    kiln_film_desc *d = &r->film_desc;
+    *d = (kiln_film_desc){.width = r->view.width, .height = r->view.height, .aovs = o->layers.aovs,
+                          .mattes = o->layers.mattes, .threads = o->threads};
+    memcpy(d->crop, o->crop, sizeof o->crop);
+    if (needs_alpha(r)) d->aovs |= 1u << KILN_AOV_ALPHA;
     if (o->crop[2] > r->view.width || o->crop[3] > r->view.height) {
         kiln_where where = where_root("--crop");
         return report_error(r->report, KILN_CODE_USAGE, &where,
@@ -29,14 +49,15 @@ bool run_film(job_run *r) {
                             "%u,%u,%u,%u is not a part of %u x %u pixels", o->crop[0], o->crop[1], o->crop[2],
                             o->crop[3], r->view.width, r->view.height);
     }
-    if (machine && bytes > machine / 4 * 3) {
-        kiln_where where = where_root("--size");
-        return report_error(r->report, job_given(o, size) ? KILN_CODE_USAGE : KILN_CODE_MEMORY, &where,
-                            "render a smaller picture, or crops of it",
-                            "%u x %u pixels need %.1f GB, and the machine has %.1f GB", r->view.width, r->view.height,
-                            (double)bytes * 1e-9, (double)machine * 1e-9);
-    }
-    return kiln_film_create(&r->film_desc, &r->film, r->report);
+    if (!layers_parts(&o->layers, r->scene, &d->parts, &d->part_count, r->report)) return false;
+    uint64_t pixels = o->crop[2] ? (uint64_t)(o->crop[2] - o->crop[0]) * (o->crop[3] - o->crop[1])
+                                 : (uint64_t)r->view.width * r->view.height;
+    bool done = check_memory(r, kiln_film_size(d) + pixels * output_bytes(d)) &&
+                kiln_film_create(d, &r->film, r->report);
+    note_background(r);
+    free((void *)d->parts);
+    d->parts = NULL;
+    return done;
 }
 
 bool run_build(job_run *r) {
@@ -170,7 +191,7 @@ bool run_write(job_run *r) {
     job_metadata metadata;
     if (!metadata_make(&metadata, r)) return report_no_memory(r->report, "writing pictures");
     picture p = {.film = r->film, .color = r->color, .view = r->display,
-                 .transparent = b->kind == KILN_BACKGROUND_TRANSPARENT, .layers = r->options->aovs,
+                 .transparent = b->kind == KILN_BACKGROUND_TRANSPARENT, .layers = r->options->layers.aovs,
                  .background = b->kind == KILN_BACKGROUND_COLOR ? b->rgb : NULL,
                  .threads = r->options->threads,
                  .text = metadata.text, .text_count = metadata.text_count,

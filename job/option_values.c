@@ -246,38 +246,6 @@ static void print_subdivide(const option_row *row, const void *field, kiln_text 
     else text_append(out, s->mode == KILN_SUBDIVIDE_OFF ? "off" : "auto");
 }
 
-static const char *const aov_names[KILN_AOV_COUNT] = {
-#define KILN_AOV_NAME(id, name, channels, text) name,
-    KILN_AOVS(KILN_AOV_NAME)
-#undef KILN_AOV_NAME
-};
-
-static bool parse_aovs(const option_row *row, const char *text, void *field, kiln_arena *arena) {
-    (void)row, (void)arena;
-    uint32_t bits = 0;
-    while (*text) {
-        char name[64];
-        int found = -1;
-        if (!take(&text, ',', name)) return false;
-        for (int a = 0; a < KILN_AOV_COUNT; a++)
-            if (strcmp(name, aov_names[a]) == 0) found = a;
-        if (found < 0) return false;
-        bits |= 1u << found;
-    }
-    *(uint32_t *)field = bits;
-    return true;
-}
-
-static void print_aovs(const option_row *row, const void *field, kiln_text *out) {
-    (void)row;
-    const char *comma = "";
-    for (int a = 0; a < KILN_AOV_COUNT; a++) {
-        if (!(*(const uint32_t *)field & 1u << a)) continue;
-        text_format(out, "%s%s", comma, aov_names[a]);
-        comma = ",";
-    }
-}
-
 const option_kind option_size = {parse_size, print_size, false, false};
 const option_kind option_crop = {parse_crop, print_crop, false, false};
 const option_kind option_percent = {parse_percent, print_percent, false, false};
@@ -288,4 +256,3 @@ const option_kind option_orbit = {parse_orbit, print_orbit, false, false};
 const option_kind option_focus = {parse_focus, print_focus, false, false};
 const option_kind option_background = {parse_background, print_background, false, false};
 const option_kind option_subdivide = {parse_subdivide, print_subdivide, false, false};
-const option_kind option_aovs = {parse_aovs, print_aovs, false, false};

@@ -3,6 +3,7 @@
 #ifndef KILN_JOB_OPTIONS_H
 #define KILN_JOB_OPTIONS_H
 
+#include "job/layers.h"
 #include "job/option.h"
 #include "kiln/import.h"
 #include "kiln/render.h"
@@ -54,7 +55,7 @@ typedef struct job_options {
     job_subdivision subdivide;
     kiln_scheme scheme;
     double crease_angle_deg;
-    uint32_t aovs; /* bits 1 << kiln_aov */
+    job_layers layers;
     double exposure;
     const char *display, *view, *look, *ocio, *working_space;
     bool allow_outside;
@@ -87,6 +88,6 @@ bool job_rules_choose(const job_options *, job_rules *, kiln_report *);
 
 /* Kinds of single options; option_values.c. */
 extern const option_kind option_size, option_crop, option_percent, option_duration, option_filter, option_roulette,
-    option_orbit, option_focus, option_background, option_subdivide, option_aovs, option_embree;
+    option_orbit, option_focus, option_background, option_subdivide, option_embree;
 
 #endif

@@ -18,6 +18,12 @@ static const option_choice schemes[] = {{"auto", KILN_SCHEME_AUTO},
 static const char picture[] = "Picture", quality[] = "When it ends", estimator[] = "Estimator", camera[] = "Camera",
                   light[] = "Light", surface[] = "Surfaces", color[] = "Colour", machine[] = "Machine";
 
+/* In the order of kiln/film.h. */
+#define AOV_NAMES                                                                                                      \
+    "alpha, albedo, normal, depth, position, uv, object, material, samples, error; emission, direct, indirect; "        \
+    "lobe:NAME (emission, diffuse, specular, transmission); lightgroup:NAME (a light or an emitting material, or "      \
+    "environment); cryptomatte, cryptomatte:NAME (object, material, asset)"
+
 static const option_row rows[] = {
     {"output", 'o', "FILE", picture,
      "by suffix: .exr scene-linear with AOVs and metadata, .hdr scene-linear, .png .jpg .webp .tif as displayed; "
@@ -27,9 +33,11 @@ static const option_row rows[] = {
      "a size WxH of 1 to 65536 pixels a side", &option_size, FIELD(size), .also = JOB_INSPECT},
     {"crop", 0, "X0,Y0,X1,Y1", picture, "renders that part alone; pixels, right and bottom exclusive", NULL, NULL,
      "a part X0,Y0,X1,Y1 of the picture with X0 < X1 and Y0 < Y1", &option_crop, FIELD(crop)},
-    {"aov", 0, "LIST", picture, "layers of .exr files: albedo, normal, depth, samples, error, alpha", NULL, NULL,
-     "a list such as albedo,normal of albedo, normal, depth, samples, error, alpha", &option_aovs,
-     FIELD(aovs), .also = JOB_INSPECT},
+    {"aov", 0, "LIST", picture,
+     "layers of .exr files: " AOV_NAMES ". Of lights and lobes '*' means all; what is left out is one more layer, so "
+     "that each of the three divisions sums to the picture exactly",
+     NULL, NULL, "a list such as albedo,lobe:*,lightgroup:key of " AOV_NAMES, &option_layers, FIELD(layers),
+     .also = JOB_INSPECT},
 
     {"spp", 0, "N", quality, "samples per pixel; the same bits for any number of threads", NULL, "1024 with --noise 3%",
      "a whole number from 1 to 16777216", &option_count, .low = 1, .high = 16777216, FIELD(spp)},

@@ -78,7 +78,7 @@ bool outputs_plan(const job_options *o, const template_values *values, output_pl
     if (!plan->items) return report_no_memory(report, "naming outputs");
     for (uint32_t i = 0; i < count; i++)
         if (!add(o, plan, given ? o->outputs.items[i] : "{name}.png", values, report)) return false;
-    if (o->aovs && !outputs_any(plan, OUTPUT_EXR)) {
+    if (layers_any(&o->layers) && !outputs_any(plan, OUTPUT_EXR)) {
         kiln_where where = where_root("--aov");
         return report_error(report, KILN_CODE_USAGE, &where, "add an output that ends in .exr",
                             "no output can hold the layers that it asks for");

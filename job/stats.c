@@ -175,6 +175,16 @@ static json_t *memory_facts(const job_run *r) {
     return o;
 }
 
+static json_t *layer_facts(const job_run *r) {
+    json_t *array = json_array();
+    kiln_text names = {0};
+    layers_list(&r->options->layers, r->film, &names);
+    for (const char *name = names.data; name && *name; name += strlen(name) + 1)
+        (void)json_array_append_new(array, json_text_of(name));
+    text_free(&names);
+    return array;
+}
+
 static json_t *picture_facts(const job_run *r) {
     kiln_film_desc d = kiln_film_describe(r->film);
     json_t *o = json_object(), *crop = json_array();
@@ -186,6 +196,7 @@ static json_t *picture_facts(const job_run *r) {
     put_text(o, "color_view", kiln_view_describe(r->display));
     put_number(o, "exposure", r->exposure);
     put_bool(o, "exposure_chosen", r->exposure_chosen);
+    put(o, "layers", layer_facts(r));
     return o;
 }
 
