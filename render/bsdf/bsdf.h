@@ -35,6 +35,7 @@ typedef struct surface {
     vec3 specular_color;
     float f0;             /* ((n − 1)/(n + 1))² */
     float transmission;
+    vec3 through;         /* what the interface lets through is tinted by it: base, or that of one wavelength */
     float eta;            /* n of the far side over n of wo's side; thin wall: of the wall over the air */
     float thin;           /* 1: an infinitely thin wall, 0: the boundary of a solid */
 } surface;
@@ -49,7 +50,7 @@ typedef struct bsdf {
     float f90;
     vec3 reflect0, reflect1;        /* REFLECTION's F: reflect0 + reflect1 (1 − c)^5 + interface · exact */
     float interface;                /* (1 − m) t */
-    vec3 tint;                      /* interface · base: TRANSMISSION's F is tint (1 − exact) */
+    vec3 tint;                      /* interface · through: TRANSMISSION's F is tint (1 − exact) */
     float eta, thin;
     float again_near, again_far;    /* multiple scattering of the interface, but for its factors at wi */
     albedo_node near_ior, far_ior;  /* of albedo_interface, seen from wo's side and from the far side */
@@ -175,7 +176,7 @@ KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo) {
     if (mask & BSDF_TRANSMISSIVE) {
         float reflected, passed;
         b.interface = dielectric * t;
-        b.tint = v3_scale(s->base, b.interface);
+        b.tint = v3_scale(s->through, b.interface);
         b.eta = s->eta;
         b.thin = s->thin;
         b.near_ior = albedo_ior_node(s->eta);

@@ -71,6 +71,7 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
     X(float, metallic) X(float, roughness) X(float, specular) X(float, f0)                                             \
     X(float, tint_r) X(float, tint_g) X(float, tint_b) /* of the coat's F0 */                                          \
     X(float, transmission) X(float, eta) X(float, thin)                                                                \
+    X(float, hue_r) X(float, hue_g) X(float, hue_b) /* tints what passes: of the wavelength that the path takes on */  \
     X(uint64_t, beyond)                          /* stack of media behind the surface */                               \
     X(uint32_t, crosses)                         /* the next ray lies on the far side */                               \
     X(float, emit_r) X(float, emit_g) X(float, emit_b)                                                                 \

@@ -16,6 +16,7 @@ KERNEL surface lane_surface(unsigned mask, const path_scratch *x, uint32_t i) {
     }
     if (mask & BSDF_TRANSMISSIVE) {
         s.transmission = x->transmission[i];
+        s.through = v3_mul(s.base, v3(x->hue_r[i], x->hue_g[i], x->hue_b[i]));
         s.eta = x->eta[i];
         s.thin = x->thin[i];
     }

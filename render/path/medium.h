@@ -48,6 +48,14 @@ KERNEL vec3 medium_transmittance(const float *extinction, uint32_t medium, float
     return v3(fm_exp(extinction[k] * d), fm_exp(extinction[k + 1] * d), fm_exp(extinction[k + 2] * d));
 }
 
+#define WAVELENGTH_D 587.6f /* nanometres: of helium's d line, where the index is the material's */
+
+/* KHR_materials_dispersion: n(λ) = n_d + (n_d − 1)/V (523655/λ² − 1.5168) ≥ 1, λ in nanometres: Cauchy's first terms. */
+KERNEL float medium_ior(const world_medium *m, float wavelength) {
+    float n = m->ior + m->spread * (523655.0f / (wavelength * wavelength) - 1.5168f);
+    return fm_clamp(n, 1.0f, WORLD_IOR_MAX);
+}
+
 /* What a path that travels in `near` meets at a surface that bounds `medium` and leads to the stack `beyond`. */
 typedef struct medium_boundary {
     float eta;  /* n of the far side over n of the near one */
@@ -55,11 +63,11 @@ typedef struct medium_boundary {
 } medium_boundary;
 
 KERNEL medium_boundary medium_boundary_at(const world_medium *table, uint32_t medium, uint64_t media, uint64_t beyond,
-                                          int entering) {
+                                          int entering, float wavelength) {
     uint32_t near = medium_top(media), far = medium_top(beyond);
     /* Left, but never entered: the mesh is open. The medium is taken to have been there, unless a higher one is. */
     if (media == beyond && !entering && medium > near) near = medium;
-    return (medium_boundary){table[far].ior / table[near].ior, near == far};
+    return (medium_boundary){medium_ior(&table[far], wavelength) / medium_ior(&table[near], wavelength), near == far};
 }
 
 #endif

@@ -8,6 +8,7 @@
 #include "render/path/parts.h"
 #include "render/sample/filter.h"
 #include "render/sample/sampler.h"
+#include "render/world/spectrum.h"
 
 /* What all paths of a render share. Immutable. */
 typedef struct path_context {
@@ -34,6 +35,11 @@ typedef struct path_context {
 
 /* One sample of one pixel. */
 typedef struct path_sample { uint32_t x, y, n; } path_sample;
+
+/* The wavelength that a path of a world with a spectrum takes on: of the sample, whenever that is. */
+static inline spectrum_line path_wavelength(const path_context *c, sample_point p) {
+    return spectrum_draw(c->world->spectrum, sample_pair(c->independent, p, SAMPLE_WAVELENGTH, 0).x);
+}
 
 /* Traces count ≤ BATCH_PATHS samples to their end; b->out then holds their results by position in samples. */
 typedef void path_tracer(const path_context *, const path_sample *samples, uint32_t count, batch *);

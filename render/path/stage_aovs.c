@@ -8,7 +8,8 @@ KERNEL void write_albedo(unsigned mask, batch *b, lane_range lanes) {
     for (uint32_t i = lanes.first; i < lanes.end; i++) {
         shading p = lane_shading(mask, s, &b->scratch, i);
         vec3 a = bsdf_albedo(mask, &p.bsdf);
-        o->albedo[0][s->slot[i]] = a.x, o->albedo[1][s->slot[i]] = a.y, o->albedo[2][s->slot[i]] = a.z;
+        uint32_t slot = slot_index(s->slot[i]);
+        o->albedo[0][slot] = a.x, o->albedo[1][slot] = a.y, o->albedo[2][slot] = a.z;
     }
 }
 
@@ -44,7 +45,7 @@ void STAGE(aovs)(const path_context *c, batch *b) {
     vec3 axis = v3_neg(c->camera.back);
     float metres = (float)(1.0 / c->world->scale);
     for (uint32_t i = 0; i < b->n; i++) {
-        uint32_t slot = s->slot[i];
+        uint32_t slot = slot_index(s->slot[i]);
         o->normal[0][slot] = x->nx[i], o->normal[1][slot] = x->ny[i], o->normal[2][slot] = x->nz[i];
         vec3 from = v3_sub(v3(x->px[i], x->py[i], x->pz[i]), c->camera.origin);
         o->depth[slot] = v3_dot(from, axis) * metres;

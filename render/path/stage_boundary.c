@@ -20,6 +20,24 @@ static void set_eta(path_scratch *x, uint32_t i, const world_material *m, float 
     x->f0[i] = m->f0 < 1.0f ? normal_reflectance(eta) : 1.0f; /* 1: an infinite index */
 }
 
+/* A path takes on a wavelength where it enters a dispersive medium for the first time. */
+static void set_hue(const world *w, const path_state *s, path_scratch *x, uint32_t i, const spectrum_line *line) {
+    bool takes = w->media[medium_top(x->beyond[i])].spread > 0.0f && !(s->slot[i] & SLOT_DISPERSED);
+    if (takes) x->hue_r[i] = line->weight.x, x->hue_g[i] = line->weight.y, x->hue_b[i] = line->weight.z;
+}
+
+static void bound(const path_context *c, const path_state *s, path_scratch *x, uint32_t i, const world_material *m) {
+    const world *w = c->world;
+    int entering = x->front[i] > 0.5f;
+    spectrum_line line = {.wavelength = WAVELENGTH_D};
+    if (w->spectrum) line = path_wavelength(c, (sample_point){s->index[i], s->seed[i]});
+    medium_boundary at =
+        medium_boundary_at(w->media, m->medium, s->media[i], x->beyond[i], entering, line.wavelength);
+    set_eta(x, i, m, at.eta);
+    if (at.hidden) hide(x, i);
+    else if (w->spectrum) set_hue(w, s, x, i, &line);
+}
+
 void STAGE(boundary)(const path_context *c, batch *b) {
     const world *w = c->world;
     const path_state *s = batch_state(b);
@@ -28,14 +46,8 @@ void STAGE(boundary)(const path_context *c, batch *b) {
     for (uint32_t i = 0; i < b->n; i++) {
         const world_material *m = &w->materials[x->material[i]];
         uint64_t media = s->media[i];
-        int entering = x->front[i] > 0.5f;
-        x->beyond[i] = w->touches ? h->beyond[i] : medium_cross(media, m->medium, entering);
-        if (m->medium) {
-            medium_boundary at = medium_boundary_at(w->media, m->medium, media, x->beyond[i], entering);
-            set_eta(x, i, m, at.eta);
-            if (at.hidden) hide(x, i);
-        } else if (media && m->kind != KIND_DIFFUSE) {
-            set_eta(x, i, m, m->eta / w->media[medium_top(media)].ior);
-        }
+        x->beyond[i] = w->touches ? h->beyond[i] : medium_cross(media, m->medium, x->front[i] > 0.5f);
+        if (m->medium) bound(c, s, x, i, m);
+        else if (media && m->kind != KIND_DIFFUSE) set_eta(x, i, m, m->eta / w->media[medium_top(media)].ior);
     }
 }

@@ -1,4 +1,19 @@
+#include "render/path/medium.h"
 #include "render/path/stages.h"
+
+/* A camera in a dispersive medium: its paths have a wavelength from the start. */
+static void disperse(const path_context *c, batch *b) {
+    path_state *s = batch_state(b);
+    const world_medium *m = &c->world->media[medium_top(c->media)];
+    if (!(m->spread > 0.0f)) return;
+    for (uint32_t i = 0; i < b->n; i++) {
+        spectrum_line line = path_wavelength(c, (sample_point){s->index[i], s->seed[i]});
+        float n = medium_ior(m, line.wavelength), alive = s->tr[i] > 0.0f ? 1.0f / (n * n) : 0.0f;
+        s->tr[i] = alive * line.weight.x, s->tg[i] = alive * line.weight.y, s->tb[i] = alive * line.weight.z;
+        s->squeeze[i] = n * n;
+        s->slot[i] |= SLOT_DISPERSED;
+    }
+}
 
 void STAGE(camera)(const path_context *c, const path_sample *samples, uint32_t count, batch *b) {
     path_state *s = batch_state(b);
@@ -41,4 +56,5 @@ void STAGE(camera)(const path_context *c, const path_sample *samples, uint32_t c
         s->squeeze[i] = squeeze;
         s->media[i] = media;
     }
+    disperse(c, b);
 }

@@ -52,7 +52,7 @@ void STAGE(connect)(const path_context *c, batch *b) {
     ray_lanes rays = {x->sox, x->soy, x->soz, x->sdx, x->sdy, x->sdz, NULL, x->tfar, coverage, x->list, count};
     accel_visible(c->world, &rays, x->visible, &b->shadow_rays);
     for (uint32_t k = 0; k < count; k++)
-        if (x->visible[x->list[k]] == RAY_REFUSED) b->out.refused[s->slot[x->list[k]] & ~SLOT_BEYOND] = 1;
+        if (x->visible[x->list[k]] == RAY_REFUSED) b->out.refused[slot_index(s->slot[x->list[k]])] = 1;
     LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
         float seen = x->visible[i] == RAY_REACHES ? 1.0f : 0.0f;
         s->lr[i] += seen * x->cr[i];

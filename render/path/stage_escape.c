@@ -61,7 +61,7 @@ void STAGE(escape)(const path_context *c, batch *b) {
     uint32_t *list = b->scratch.list, count = 0;
     bool first = b->depth == 0, surrounded = !first || c->background == KILN_BACKGROUND_ENVIRONMENT;
     for (uint32_t i = 0; first && i < b->n; i++)
-        b->out.alpha[s->slot[i]] = h->triangle[i] < TRIANGLE_REFUSED ? 1.0f : 0.0f;
+        b->out.alpha[slot_index(s->slot[i])] = h->triangle[i] < TRIANGLE_REFUSED ? 1.0f : 0.0f;
     for (uint32_t i = 0; i < b->n; i++)
         if (h->triangle[i] == TRIANGLE_NONE) list[count++] = i;
     if (first) show_background(c, b, count);

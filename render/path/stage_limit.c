@@ -12,7 +12,7 @@ void STAGE(limit)(const path_context *c, batch *b) {
     path_state *s = batch_state(b);
     bool probes_end = b->depth >= c->max_depth + PROBE_DEPTHS;
     for (uint32_t i = 0; i < b->n; i++) {
-        bool probe = !probes_end && path_is_probe(s->seed[i], s->index[i]) && s->slot[i] != SLOT_NOWHERE;
+        bool probe = !probes_end && path_is_probe(s->seed[i], s->index[i]) && slot_index(s->slot[i]) != SLOT_NOWHERE;
         if (!probe) s->tr[i] = s->tg[i] = s->tb[i] = 0.0f;
         else if (!(s->slot[i] & SLOT_BEYOND)) start_probe(b, i);
     }

@@ -20,6 +20,7 @@ static void load_transmissive(const world *w, path_scratch *x, uint32_t i) {
     x->transmission[i] = m->transmission;
     x->thin[i] = m->thin;
     x->eta[i] = m->eta;
+    x->hue_r[i] = x->hue_g[i] = x->hue_b[i] = 1.0f;
 }
 
 static void tint_by_vertices(const world *w, const path_hit *h, path_scratch *x, uint32_t n) {

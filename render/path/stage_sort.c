@@ -49,7 +49,7 @@ void STAGE(sort)(const path_context *c, batch *b) {
         kind[i] = goes_on ? w->materials[w->triangle_material[h->triangle[i]]].kind : KIND_COUNT;
         if (goes_on) continue;
         batch_flush(b, i);
-        if (h->triangle[i] == TRIANGLE_REFUSED) b->out.refused[s->slot[i] & ~SLOT_BEYOND] = 1;
+        if (h->triangle[i] == TRIANGLE_REFUSED) b->out.refused[slot_index(s->slot[i])] = 1;
     }
     for (uint32_t k = 0; k < KIND_COUNT; k++) {
         b->kinds[k].first = count;

@@ -63,10 +63,12 @@ void STAGE(part_light)(const path_context *, batch *);
 void STAGE(part_scatter)(const path_context *, batch *);
 
 /* Radiance of a path that ends goes to its slot. */
-#define SLOT_BEYOND (1u << 31) /* the path has passed the depth limit: its radiance is counted apart */
+#define SLOT_BEYOND (1u << 31)    /* the path has passed the depth limit: its radiance is counted apart */
+#define SLOT_DISPERSED (1u << 30) /* it has taken on a wavelength: its throughput has the hue */
+static inline uint32_t slot_index(uint32_t slot) { return slot & ~(SLOT_BEYOND | SLOT_DISPERSED); }
 static inline void batch_flush(batch *b, uint32_t lane) {
     const path_state *s = batch_state(b);
-    uint32_t slot = s->slot[lane] & ~SLOT_BEYOND;
+    uint32_t slot = slot_index(s->slot[lane]);
     int beyond = (s->slot[lane] & SLOT_BEYOND) != 0;
     (beyond ? b->out.beyond_r : b->out.r)[slot] = s->lr[lane];
     (beyond ? b->out.beyond_g : b->out.g)[slot] = s->lg[lane];

@@ -16,7 +16,8 @@
     X(LIGHT_FINE, 2, "the digits that the choice of a light leaves open; which shadow ray coverage stops")             \
     X(BSDF, 2, "direction of a lobe")                                                                                  \
     X(LOBE, 2, "which lobe; whether the path goes on")                                                                 \
-    X(COVERAGE, 1, "whether a surface of partial coverage is hit")
+    X(COVERAGE, 1, "whether a surface of partial coverage is hit")                                                     \
+    X(WAVELENGTH, 1, "wavelength of a path that meets dispersion")
 
 typedef enum sample_purpose {
 #define SAMPLE_PURPOSE_ENUM(id, numbers, text) SAMPLE_##id,
@@ -25,9 +26,10 @@ typedef enum sample_purpose {
         SAMPLE_PURPOSE_COUNT
 } sample_purpose;
 
-/* The key of a purpose at a depth: what its scrambling is seeded with. */
+/* The key of a purpose at a depth: what its scrambling is seeded with. In blocks of eight purposes, each with keys of its
+ * own for all depths, so that a new purpose moves no other. */
 static inline uint32_t sample_key(sample_purpose purpose, uint32_t depth) {
-    return depth * (uint32_t)SAMPLE_PURPOSE_COUNT + (uint32_t)purpose;
+    return (uint32_t)purpose / 8u << 28 | (depth * 8u + (uint32_t)purpose % 8u);
 }
 
 #endif

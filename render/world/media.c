@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/world/spectrum.h"
 #include "scene/transfer.h"
 
 bool material_is_solid(const kiln_material *m) {
@@ -88,7 +89,9 @@ static vec3 extinction_of(const world *w, const kiln_decoding *decoding, const k
 static void set_medium(world *w, const kiln_decoding *decoding, const kiln_material *from, uint32_t number) {
     world_medium *m = &w->media[number];
     vec3 sigma = extinction_of(w, decoding, from);
+    bool disperses = from->layers & KILN_LAYER_DISPERSION && from->dispersion > 0 && from->ior > 1;
     *m = (world_medium){.ior = from->ior > 0 ? fminf(from->ior, WORLD_IOR_MAX) : WORLD_IOR_MAX};
+    if (disperses) m->spread = fminf((m->ior - 1.0f) * from->dispersion / 20.0f, WORLD_IOR_MAX);
     v3_store(w->extinction + 3 * (size_t)number, sigma);
     w->absorbs |= v3_max(sigma) > 0;
 }
@@ -146,6 +149,15 @@ static bool some_touch(const world *w, const kiln_scene *scene) {
     return false;
 }
 
+static bool set_spectrum(world *w, const kiln_decoding *decoding) {
+    bool disperses = false;
+    for (uint32_t i = 0; i < w->media_count; i++) disperses |= w->media[i].spread > 0;
+    if (!disperses) return true;
+    w->spectrum = ARENA_ARRAY(&w->arena, float, SPECTRUM_FLOATS);
+    if (w->spectrum) spectrum_make(decoding->matrix[KILN_TRANSFER_LINEAR], w->spectrum);
+    return w->spectrum != NULL;
+}
+
 /* What building needs for a while. */
 typedef struct scratch {
     candidate *list;
@@ -176,7 +188,7 @@ static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decodi
         set_medium(w, decoding, scene_material(scene, list[i].material), (uint32_t)i + 1);
     }
     w->touches = n > 0 && some_touch(w, scene);
-    return true;
+    return set_spectrum(w, decoding) || report_no_memory(report, "building media");
 }
 
 bool world_build_media(world *w, const kiln_scene *scene, const kiln_decoding *decoding, const bool *used,

@@ -76,7 +76,8 @@ typedef struct world_material {
 
 /* What fills a solid, beside what it takes away (world.extinction). */
 typedef struct world_medium {
-    float ior; /* at 587.6 nm */
+    float ior;    /* at 587.6 nm */
+    float spread; /* (ior − 1)/V, V the Abbe number; 0: the index is that at all wavelengths */
 } world_medium;
 
 struct accel;
@@ -120,6 +121,7 @@ typedef struct world {
     float *extinction;   /* of each, 3, per length in render space */
     bool absorbs;        /* one of them is not 0 */
     bool touches;        /* solids may touch or overlap */
+    float *spectrum;     /* spectrum.h; NULL: no medium disperses */
 
     light_table lights;
     bool emits;          /* some surface shines, lights or unlit ones */

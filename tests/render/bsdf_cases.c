@@ -50,7 +50,7 @@ void subject_make(subject *to, const bsdf_case *c) {
     to->row = c;
     to->surface = (surface){.base = c->base, .metallic = c->metallic, .specular = c->specular,
                             .specular_color = c->specular_color, .f0 = c->ior > 0 ? root * root : 1.0f,
-                            .transmission = c->transmission, .eta = eta, .thin = c->thin ? 1.0f : 0.0f};
+                            .transmission = c->transmission, .through = c->base, .eta = eta, .thin = c->thin ? 1.0f : 0.0f};
 }
 
 static bsdf make(unsigned mask, const surface *s, vec3 wo) {

@@ -38,7 +38,8 @@ static kiln_id textured(scene_builder *b) {
 
 static kiln_id glass(scene_builder *b, float roughness, float thickness, float ior, float red) {
     kiln_material m = kiln_material_default();
-    m.layers = KILN_LAYER_TRANSMISSION | KILN_LAYER_VOLUME;
+    m.layers = KILN_LAYER_TRANSMISSION | KILN_LAYER_VOLUME | KILN_LAYER_DISPERSION;
+    m.dispersion = roughness;
     m.metallic.value = 0;
     m.roughness.value = roughness;
     m.transmission.value = 0.9f;

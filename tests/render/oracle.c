@@ -12,6 +12,7 @@ typedef struct path {
     sample_point point;
     vec3 origin, direction, throughput, radiance;
     float pdf, squeeze, near, far;
+    bool dispersed; /* it has a wavelength */
     uint64_t media;
     uint32_t depth;
 } path;
@@ -34,6 +35,14 @@ static ray_coverage coverage_of(const path_context *c, const path *p, sample_pur
 static path start(const path_context *c, path_sample s) {
     path p = {.point = sample_point_make(c->seed, s.y << 16 | s.x, s.n), .squeeze = c->squeeze, .media = c->media};
     p.throughput = v3_splat(1.0f / c->squeeze);
+    const world_medium *around = &c->world->media[medium_top(c->media)];
+    if (around->spread > 0) {
+        spectrum_line line = path_wavelength(c, p.point);
+        float n = medium_ior(around, line.wavelength);
+        p.throughput = v3_scale(line.weight, 1.0f / (n * n));
+        p.squeeze = n * n;
+        p.dispersed = true;
+    }
     vec2 pixel = draw(c, &p, SAMPLE_PIXEL), lens = draw(c, &p, SAMPLE_LENS);
     float across = 2.0f / (float)c->width, down = 2.0f / (float)c->height;
     float x = (float)s.x + 0.5f + pixel_filter_offset(&c->filter, pixel.x);
@@ -159,7 +168,7 @@ static surface look_up(const path_context *c, const hit *h, vec3 *emission, vec3
     const world *w = c->world;
     const world_material *m = h->material;
     surface s = {v3_load(m->base), m->metallic, m->roughness, m->specular, v3_load(m->specular_color), m->f0,
-                 m->transmission, m->eta, m->thin};
+                 m->transmission, v3_splat(1), m->eta, m->thin};
     *emission = v3_load(m->emission);
     if (w->colors) {
         float tint[4];
@@ -204,14 +213,22 @@ static void bound(const path_context *c, const path *p, const hit *h, surface *s
     const world *w = c->world;
     const world_material *m = h->material;
     if (m->medium) {
-        medium_boundary at = medium_boundary_at(w->media, m->medium, p->media, h->beyond, h->p.front > 0.5f);
+        spectrum_line line = {.wavelength = WAVELENGTH_D};
+        if (w->spectrum) line = path_wavelength(c, p->point);
+        medium_boundary at =
+            medium_boundary_at(w->media, m->medium, p->media, h->beyond, h->p.front > 0.5f, line.wavelength);
+        bool takes = !at.hidden && w->media[medium_top(h->beyond)].spread > 0 && !p->dispersed;
+        s->through = takes ? v3_mul(s->base, line.weight) : s->base;
         s->eta = at.eta;
         s->f0 = normal_reflectance(m, at.eta);
         if (!at.hidden) return;
-        s->base = v3_splat(1);
+        s->base = s->through = v3_splat(1);
         s->metallic = s->roughness = s->f0 = 0;
         s->transmission = 1;
-    } else if (p->media) {
+        return;
+    }
+    s->through = s->base;
+    if (p->media) {
         s->eta = m->eta / w->media[medium_top(p->media)].ior;
         s->f0 = normal_reflectance(m, s->eta);
     }
@@ -269,6 +286,7 @@ static bool scatter(const path_context *c, path *p, const hit *h, const shading 
     if (mask & BSDF_TRANSMISSIVE && r.crosses) {
         if (s->bsdf.thin < 0.5f) p->squeeze *= s->bsdf.eta * s->bsdf.eta;
         p->media = h->beyond;
+        p->dispersed |= c->world->media[medium_top(h->beyond)].spread > 0;
     }
     roulette policy = roulette_make(c, p->depth);
     p->throughput = v3_scale(r.throughput, roulette_weight(&policy, r.throughput, p->squeeze, lobe.y));

@@ -75,7 +75,7 @@ static const unsigned masks[KIND_COUNT] = {0, BSDF_GLOSSY, BSDF_GLOSSY | BSDF_TR
 /* As the stages load it, without textures. */
 static surface surface_of(const world_material *m, bool outside) {
     outside = outside || m->thin > 0.5f;
-    return (surface){.base = v3_load(m->base), .metallic = m->metallic, .roughness = m->roughness,
+    return (surface){.base = v3_load(m->base), .through = v3_load(m->base), .metallic = m->metallic, .roughness = m->roughness,
                      .specular = m->specular, .specular_color = v3_load(m->specular_color), .f0 = m->f0,
                      .transmission = m->transmission,
                      .eta = outside ? m->eta : 1.0f / m->eta, .thin = m->thin};
