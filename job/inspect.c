@@ -153,7 +153,7 @@ static json_t *memory_estimate(const job_run *r, uint64_t textures) {
     const job_layers *layers = &r->options->layers;
     kiln_film_desc film = {.width = r->view.width, .height = r->view.height, .aovs = layers->aovs,
                            .mattes = layers->mattes};
-    (void)layers_parts(layers, r->scene, &film.parts, &film.part_count, r->report);
+    (void)layers_parts(layers, r->scene, &film.parts, &film.part_count, r->report); /* reported: then without them */
     uint64_t geometry = 0, bvh = kiln_scene_count(r->scene).triangles_unique * BVH_BYTES;
     for (uint32_t i = 0; i < r->scene->mesh_count; i++) geometry += geometry_bytes(&r->scene->meshes[i]);
     json_t *o = json_object();

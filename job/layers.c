@@ -132,23 +132,53 @@ static bool finish(parts *p, const char *const **names, uint32_t *count) {
     return all != NULL;
 }
 
+enum { LIGHTS_SHOWN = 20 };
+
+/* Before anything is built: a name that the scene does not have. */
+static bool check_lights(const job_layers *l, const char *const *groups, uint32_t count, kiln_report *report) {
+    for (uint32_t i = 0; i < l->lights.count; i++) {
+        const char *name = l->lights.items[i], *near;
+        uint32_t k = 0;
+        while (k < count && strcmp(groups[k], name) != 0) k++;
+        if (k < count) continue;
+        kiln_where where = where_root("--aov");
+        kiln_text remedy = {0};
+        if ((near = text_nearest(name, groups, count))) text_format(&remedy, "did you mean '%s'? ", near);
+        text_append(&remedy, "give one of: *");
+        for (k = 0; k < count && k < LIGHTS_SHOWN; k++) text_format(&remedy, ", %s", groups[k]);
+        if (count > LIGHTS_SHOWN) text_append(&remedy, ", ...");
+        report_error(report, KILN_CODE_USAGE, &where, remedy.data, "the scene has no light 'lightgroup:%s'", name);
+        text_free(&remedy);
+        return false;
+    }
+    return true;
+}
+
+static void add_parts(const job_layers *l, const char *const *groups, uint32_t group_count, parts *p) {
+    if (l->emission) add_part(p, "", "emission");
+    if (l->direct) add_part(p, "", "direct");
+    if (l->indirect) add_part(p, "", "indirect");
+    for (uint32_t i = 0; i < KILN_LOBE_COUNT; i++)
+        if (l->lobes >> i & 1) add_part(p, "lobe:", lobe_names[i]);
+    for (uint32_t i = 0; l->every_light && i < group_count; i++) add_part(p, "lightgroup:", groups[i]);
+    for (uint32_t i = 0; !l->every_light && i < l->lights.count; i++) add_part(p, "lightgroup:", l->lights.items[i]);
+}
+
 bool layers_parts(const job_layers *l, const kiln_scene *scene, const char *const **names, uint32_t *count,
                   kiln_report *report) {
     parts p = {0};
-    const char *const *groups = NULL;
-    uint32_t group_count = 0;
+    const char *const *groups;
+    uint32_t group_count;
     *names = NULL;
     *count = 0;
-    if (l->every_light && !kiln_scene_light_groups(scene, &groups, &group_count, report)) return false;
-    if (l->emission) add_part(&p, "", "emission");
-    if (l->direct) add_part(&p, "", "direct");
-    if (l->indirect) add_part(&p, "", "indirect");
-    for (uint32_t i = 0; i < KILN_LOBE_COUNT; i++)
-        if (l->lobes >> i & 1) add_part(&p, "lobe:", lobe_names[i]);
-    for (uint32_t i = 0; i < group_count; i++) add_part(&p, "lightgroup:", groups[i]);
-    for (uint32_t i = 0; i < l->lights.count; i++) add_part(&p, "lightgroup:", l->lights.items[i]);
+    if (!kiln_scene_light_groups(scene, &groups, &group_count, report)) return false;
+    bool done = check_lights(l, groups, group_count, report);
+    if (done) {
+        add_parts(l, groups, group_count, &p);
+        done = finish(&p, names, count) || report_no_memory(report, "making the film");
+    }
     free((void *)groups);
-    return finish(&p, names, count) || report_no_memory(report, "making the film");
+    return done;
 }
 
 void layers_name_part(const kiln_film_part_info *part, kiln_text *out) {

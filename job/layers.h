@@ -19,7 +19,7 @@ extern const option_kind option_layers;
 
 bool layers_any(const job_layers *);
 
-/* Names for kiln_film_desc.parts, in one piece; free(). False: out of memory, reported. */
+/* Names for kiln_film_desc.parts, in one piece; free(). False: reported: a light that the scene does not have. */
 bool layers_parts(const job_layers *, const kiln_scene *, const char *const **parts, uint32_t *count, kiln_report *);
 
 /* What a layer of a file is called; the channels follow a point. */

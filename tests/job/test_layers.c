@@ -185,8 +185,23 @@ static void mattes_are_decoded_by_name(void **state) {
     forget(&l);
 }
 
+static void a_light_that_is_not_there_is_refused_at_once(void **state) {
+    fixture *f = *state;
+    kiln_job *job = kiln_job_create();
+    furnish(f);
+    assert_done(f, kiln_job_set(job, "aov", "lightgroup:Kei_001", f->report));
+    char path[256];
+    assert_done(f, kiln_job_set(job, "output", path_in(f, "a.exr", path), f->report));
+    assert_false(kiln_job_render_scene(job, f->scene, "room", f->report));
+    assert_true(says(f->report, "the scene has no light 'lightgroup:Kei_001'"));
+    assert_true(says(f->report, "did you mean 'Key_001'? give one of: *, Key_001, material_4, environment"));
+    assert_int_equal(kiln_job_last(job).exit_code, 2);
+    kiln_job_destroy(job);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {JOB_TEST(parts_sum_to_the_picture), JOB_TEST(what_is_left_out_is_one_layer),
-                                       JOB_TEST(mattes_are_decoded_by_name)};
+                                       JOB_TEST(mattes_are_decoded_by_name),
+                                       JOB_TEST(a_light_that_is_not_there_is_refused_at_once)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
