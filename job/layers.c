@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "scene/groups.h"
+
 static const char *const aov_names[KILN_AOV_COUNT] = {
 #define AOV_NAME(id, name, channels, text) name,
     KILN_AOVS(AOV_NAME)
@@ -32,7 +34,8 @@ static bool add_bit(const char *const *names, uint32_t count, const char *name, 
     return found;
 }
 
-static bool add_light(job_layers *l, const char *name, kiln_arena *arena) {
+static bool add_light(job_layers *l, char *name, kiln_arena *arena) {
+    light_group_clean(name); /* whoever reads a name in the file may type it as it is */
     l->every_light |= strcmp(name, "*") == 0;
     for (uint32_t i = 0; i < l->lights.count; i++)
         if (strcmp(l->lights.items[i], name) == 0) return true;
@@ -45,15 +48,17 @@ static bool add_light(job_layers *l, const char *name, kiln_arena *arena) {
     return true;
 }
 
+static const char light_prefix[] = "lightgroup:";
+
 static const char *after(const char *name, const char *prefix) {
     size_t length = strlen(prefix);
     return strncmp(name, prefix, length) == 0 ? name + length : NULL;
 }
 
-static bool add(job_layers *l, const char *name, kiln_arena *arena) {
-    const char *lobe = after(name, "lobe:"), *light = after(name, "lightgroup:"), *matte = after(name, "cryptomatte:");
+static bool add(job_layers *l, char *name, kiln_arena *arena) {
+    const char *lobe = after(name, "lobe:"), *light = after(name, light_prefix), *matte = after(name, "cryptomatte:");
     if (lobe) return add_bit(lobe_names, KILN_LOBE_COUNT, lobe, &l->lobes);
-    if (light) return add_light(l, light, arena);
+    if (light) return add_light(l, name + strlen(light_prefix), arena);
     if (matte || strcmp(name, "cryptomatte") == 0)
         return add_bit(matte_names, KILN_MATTE_COUNT, matte ? matte : "*", &l->mattes);
     bool emission = strcmp(name, "emission") == 0, direct = strcmp(name, "direct") == 0,

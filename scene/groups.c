@@ -14,13 +14,24 @@ typedef struct gathering {
     uint32_t *table;       /* 1 + name; 0: free */
 } gathering;
 
-/* As a layer of a file can be called. */
-static const char *clean(kiln_arena *arena, const char *name, const char *what, uint32_t handle) {
+enum { NAME_MAX_BYTES = 200 };
+
+void light_group_clean(char *name) {
+    size_t length = strlen(name);
+    if (length > NAME_MAX_BYTES) {
+        length = NAME_MAX_BYTES;
+        while (length && ((unsigned char)name[length] & 0xc0) == 0x80) length--; /* UTF-8: not into a character */
+        name[length] = '\0';
+    }
+    for (char *c = name; *c; c++)
+        if (*c == '.' || *c == ',' || *c == ':' || (unsigned char)*c < ' ' || *c == 0x7f) *c = '_';
+}
+
+static const char *name_or_handle(kiln_arena *arena, const char *name, const char *what, uint32_t handle) {
     char numbered[32];
     snprintf(numbered, sizeof numbered, "%s_%u", what, handle);
     char *text = arena_string(arena, name && *name ? name : numbered);
-    for (char *c = text; c && *c; c++)
-        if (*c == '.' || *c == ',' || *c == ':') *c = '_';
+    if (text) light_group_clean(text);
     return text;
 }
 
@@ -57,10 +68,10 @@ static bool gather(const kiln_scene *s, gathering *g, light_groups *groups, bool
     bool done = true;
     mark_worn(s, worn);
     for (uint32_t i = 1; done && i <= s->light_count; i++)
-        done = add(g, clean(&g->arena, scene_light(s, i)->name, "light", i), &groups->of_light[i]);
+        done = add(g, name_or_handle(&g->arena, scene_light(s, i)->name, "light", i), &groups->of_light[i]);
     for (uint32_t i = 1; done && i <= s->material_count; i++) {
         const kiln_material *m = scene_material(s, i);
-        if (worn[i] && shines(m)) done = add(g, clean(&g->arena, m->name, "material", i), &groups->of_material[i]);
+        if (worn[i] && shines(m)) done = add(g, name_or_handle(&g->arena, m->name, "material", i), &groups->of_material[i]);
     }
     return done && add(g, "environment", &groups->of_environment);
 }

@@ -101,7 +101,8 @@ KILN_API bool kiln_scene_set_environment(kiln_scene *, const kiln_environment *,
 
 /* Where the light of a scene comes from, by name: punctual lights, materials that shine (unlit ones too) and
  * "environment", which is everything around the scene. Equal names are one group; '.', ',' and ':', which mean
- * something in names of layers and in lists, are taken for '_'; what has no name is "light_7" or "material_7", by its
+ * something in names of layers and in lists, and control characters are taken for '_', and no more than 200 bytes
+ * count; what has no name is "light_7" or "material_7", by its
  * handle. In that order, each name once. Borrowed: the names live in *groups, to be freed by free(). */
 KILN_API bool kiln_scene_light_groups(const kiln_scene *, const char *const **groups, uint32_t *count, kiln_report *);
 

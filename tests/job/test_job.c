@@ -90,6 +90,7 @@ static void a_file_becomes_pictures_and_statistics(void **state) {
                                         "scene.light",
                                         "scene.camera.position",
                                         "picture.color_view",
+                                        "picture.layers",
                                         "render.ended_by",
                                         "render.rays.camera",
                                         "render.rays.shadow",

@@ -131,7 +131,7 @@ static void parts_sum_to_the_picture(void **state) {
 }
 
 static void what_is_left_out_is_one_layer(void **state) {
-    layers l = shoot(*state, (const char *const[]){"aov", "direct,lobe:specular,lightgroup:Key_001", "background",
+    layers l = shoot(*state, (const char *const[]){"aov", "direct,lobe:specular,lightgroup:Key.001", "background",
                                                    "#ff0000", NULL});
     sum_to_the_picture(&l, (const char *const[]){"direct", "rest_bounce", NULL});
     sum_to_the_picture(&l, (const char *const[]){"rest_lobe", "specular", NULL});
@@ -189,7 +189,7 @@ static void a_light_that_is_not_there_is_refused_at_once(void **state) {
     fixture *f = *state;
     kiln_job *job = kiln_job_create();
     furnish(f);
-    assert_done(f, kiln_job_set(job, "aov", "lightgroup:Kei_001", f->report));
+    assert_done(f, kiln_job_set(job, "aov", "lightgroup:Kei.001", f->report));
     char path[256];
     assert_done(f, kiln_job_set(job, "output", path_in(f, "a.exr", path), f->report));
     assert_false(kiln_job_render_scene(job, f->scene, "room", f->report));
