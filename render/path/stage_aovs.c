@@ -21,7 +21,7 @@ static void write_places(const path_context *c, batch *b) {
     dvec3 center = c->world->center;
     double metres = 1.0 / c->world->scale;
     for (uint32_t i = 0; i < b->n; i++) {
-        uint32_t slot = s->slot[i];
+        uint32_t slot = slot_index(s->slot[i]);
         o->position[0][slot] = (float)(center.x + (double)x->px[i] * metres);
         o->position[1][slot] = (float)(center.y + (double)x->py[i] * metres);
         o->position[2][slot] = (float)(center.z + (double)x->pz[i] * metres);
@@ -33,8 +33,9 @@ static void write_handles(const path_context *c, batch *b) {
     const path_state *s = batch_state(b);
     const path_hit *h = batch_hit(b);
     for (uint32_t i = 0; i < b->n; i++) {
-        b->out.object[s->slot[i]] = lookup_object(c->world, h->triangle[i], h->instance[i]);
-        b->out.material[s->slot[i]] = b->scratch.material[i];
+        uint32_t slot = slot_index(s->slot[i]);
+        b->out.object[slot] = lookup_object(c->world, h->triangle[i], h->instance[i]);
+        b->out.material[slot] = b->scratch.material[i];
     }
 }
 

@@ -4,7 +4,13 @@
 #include "render/path/stages.h"
 
 /* Lanes whose radiance is the picture's. */
-static bool counts(const path_state *s, uint32_t i) { return s->slot[i] < SLOT_NOWHERE; }
+static bool counts(const path_state *s, uint32_t i) {
+    return !(s->slot[i] & SLOT_BEYOND) && slot_index(s->slot[i]) != SLOT_NOWHERE;
+}
+
+static bsdf_parts *shares_of(const batch *b, const path_state *s, uint32_t i) {
+    return &b->parts->shares[slot_index(s->slot[i])];
+}
 
 static vec3 radiance_of(const path_state *s, uint32_t i) { return v3(s->lr[i], s->lg[i], s->lb[i]); }
 
@@ -12,7 +18,7 @@ void STAGE(part_found)(const path_context *c, batch *b, uint32_t i, uint8_t grou
     const path_state *s = batch_state(b);
     path_bounce bounce = b->depth == 0 ? BOUNCE_EMISSION : b->depth == 1 ? BOUNCE_DIRECT : BOUNCE_INDIRECT;
     if (!counts(s, i)) return;
-    parts_record(c->parts, b->parts, s->slot[i], radiance_of(s, i), bounce, group, &b->parts->shares[s->slot[i]]);
+    parts_record(c->parts, b->parts, slot_index(s->slot[i]), radiance_of(s, i), bounce, group, shares_of(b, s, i));
 }
 
 void STAGE(part_emission)(const path_context *c, batch *b) {
@@ -39,7 +45,8 @@ KERNEL void record_first(unsigned mask, const path_context *c, batch *b, lane_ra
         if (!counts(s, i) || x->visible[i] != RAY_REACHES) continue;
         shading p = lane_shading(mask, s, x, i);
         bsdf_parts shares = bsdf_shares(mask, &p.bsdf, frame_to_local(&p.frame, v3(x->wx[i], x->wy[i], x->wz[i])));
-        parts_record(c->parts, b->parts, s->slot[i], radiance_of(s, i), BOUNCE_DIRECT, part_of_light(c, x, i), &shares);
+        parts_record(c->parts, b->parts, slot_index(s->slot[i]), radiance_of(s, i), BOUNCE_DIRECT,
+                     part_of_light(c, x, i), &shares);
     }
 }
 
@@ -54,8 +61,8 @@ void STAGE(part_light)(const path_context *c, batch *b) {
     }
     for (uint32_t i = 0; i < b->n; i++)
         if (counts(s, i) && x->visible[i] == RAY_REACHES)
-            parts_record(c->parts, b->parts, s->slot[i], radiance_of(s, i), BOUNCE_INDIRECT, part_of_light(c, x, i),
-                         &b->parts->shares[s->slot[i]]);
+            parts_record(c->parts, b->parts, slot_index(s->slot[i]), radiance_of(s, i), BOUNCE_INDIRECT,
+                         part_of_light(c, x, i), shares_of(b, s, i));
 }
 
 /* The direction that scatter is about to take is drawn here too, so that scatter need not say what it was made of. */
@@ -66,7 +73,7 @@ KERNEL void share_first(unsigned mask, batch *b, lane_range lanes) {
         if (!counts(s, i)) continue;
         shading p = lane_shading(mask, s, x, i);
         vec2 u = {x->u_bsdf_x[i], x->u_bsdf_y[i]};
-        b->parts->shares[s->slot[i]] = bsdf_shares_of_sample(mask, &p.bsdf, x->u_lobe[i], u);
+        *shares_of(b, s, i) = bsdf_shares_of_sample(mask, &p.bsdf, x->u_lobe[i], u);
     }
 }
 
