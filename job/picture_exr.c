@@ -136,7 +136,8 @@ static void add_metadata(assembly *a, const char *layer, const char *what, const
     char id[9];
     snprintf(id, sizeof id, "%08x", kiln_matte_id(layer));
     text_format(&name, "cryptomatte/%.7s/%s", id, what);
-    const char *kept = name.data ? arena_string(&a->arena, name.data) : NULL, *text = value ? arena_string(&a->arena, value) : NULL;
+    const char *kept = name.data ? arena_string(&a->arena, name.data) : NULL;
+    const char *text = value ? arena_string(&a->arena, value) : NULL;
     text_free(&name);
     a->failed |= !kept || !text;
     if (kept && text) a->attributes[a->attribute_count++] = (kiln_exr_attribute){kept, KILN_EXR_STRING, text, 0};

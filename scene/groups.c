@@ -71,7 +71,8 @@ static bool gather(const kiln_scene *s, gathering *g, light_groups *groups, bool
         done = add(g, name_or_handle(&g->arena, scene_light(s, i)->name, "light", i), &groups->of_light[i]);
     for (uint32_t i = 1; done && i <= s->material_count; i++) {
         const kiln_material *m = scene_material(s, i);
-        if (worn[i] && shines(m)) done = add(g, name_or_handle(&g->arena, m->name, "material", i), &groups->of_material[i]);
+        if (!worn[i] || !shines(m)) continue;
+        done = add(g, name_or_handle(&g->arena, m->name, "material", i), &groups->of_material[i]);
     }
     return done && add(g, "environment", &groups->of_environment);
 }

@@ -15,8 +15,8 @@ typedef struct light_groups {
 bool light_groups_make(const kiln_scene *, light_groups *, kiln_report *);
 void light_groups_free(light_groups *);
 
-/* As a layer of a file can be called: '.', ',', ':' and control characters become '_', and what is longer than 200 bytes,
- * of the 255 that a channel's name may have, is cut between two characters. In place. */
+/* As a layer of a file can be called: '.', ',', ':' and control characters become '_', and what is longer than 200
+ * bytes, of the 255 that a channel's name may have, is cut between two characters. In place. */
 void light_group_clean(char *name);
 
 #endif

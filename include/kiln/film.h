@@ -36,7 +36,7 @@ typedef enum kiln_aov {
         KILN_AOV_COUNT
 } kiln_aov;
 
-/* Coverage by name, after the Cryptomatte specification 1.2 (Psyop 2018): identifier, option, EXR layer, what has a name.
+/* Coverage by name, after the Cryptomatte specification 1.2 (Psyop): identifier, option, EXR layer, what has a name.
  * Equal names are one matte, so that names tell what belongs together, and no matte changes when something is added to
  * the scene. What has no name is "object 7" or "material 7", by its handle. */
 #define KILN_MATTES(X)                                                                                                 \
@@ -58,8 +58,8 @@ enum { KILN_MATTE_RANKS = 8 };
 /* Parts of the beauty. Three divisions share it out, each completely: what is asked for of one and what that leaves,
  * its rest, sum to the beauty, as integers in the film and as floats in any order (kiln_film_part). Names of parts:
  *
- *     emission direct indirect   what the camera sees shine; light that reached the first surface straight from where it
- *                                was sent out; light that was scattered more than once
+ *     emission direct indirect   what the camera sees shine; light that reached the first surface straight from where
+ *                                it was sent out; light that was scattered more than once
  *     lobe:NAME                  what the first surface did with the light: NAME of KILN_LOBES
  *     lightgroup:NAME            where the light comes from: NAME of kiln_scene_light_groups
  *
@@ -77,7 +77,12 @@ typedef enum kiln_lobe {
         KILN_LOBE_COUNT
 } kiln_lobe;
 
-typedef enum kiln_division { KILN_DIVISION_BOUNCE, KILN_DIVISION_LOBE, KILN_DIVISION_LIGHT, KILN_DIVISION_COUNT } kiln_division;
+typedef enum kiln_division {
+    KILN_DIVISION_BOUNCE,
+    KILN_DIVISION_LOBE,
+    KILN_DIVISION_LIGHT,
+    KILN_DIVISION_COUNT
+} kiln_division;
 
 enum { KILN_LIGHT_GROUPS_MAX = 64 }; /* parts of KILN_DIVISION_LIGHT that a film can hold */
 
@@ -112,7 +117,7 @@ typedef struct kiln_film_part_info {
     uint32_t divisions; /* bits 1 << kiln_division that it belongs to */
     bool rest;
 } kiln_film_part_info;
-KILN_API uint32_t kiln_film_part_count(const kiln_film *); /* groups of light are complete, or not, once rendered into */
+KILN_API uint32_t kiln_film_part_count(const kiln_film *); /* whether all groups of light are here shows in a render */
 KILN_API kiln_film_part_info kiln_film_describe_part(const kiln_film *, uint32_t index);
 
 /* Three floats a pixel. Each is a whole multiple of the last digit of the beauty's float, to which means are rounded so

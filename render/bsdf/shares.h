@@ -2,7 +2,7 @@
  *
  * A direction that can be evaluated is shared out by the values of the lobes there, for each channel: what a lobe sends
  * on is what is missing when it is muted. So the split of a sampled direction has no noise of its own, and does not
- * depend on which lobe it was drawn from. What is not muted by name is reflection on wo's side and transmission behind. */
+ * depend on which lobe it was drawn from. What is not muted by name is reflection on wo's side, transmission behind. */
 #ifndef KILN_RENDER_BSDF_SHARES_H
 #define KILN_RENDER_BSDF_SHARES_H
 

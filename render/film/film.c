@@ -53,7 +53,8 @@ static uint64_t bytes_per_pixel(const kiln_film_desc *d) {
 
 uint64_t kiln_film_size(const kiln_film_desc *d) {
     bool cropped = d->crop[2] > d->crop[0] && d->crop[3] > d->crop[1];
-    uint64_t width = cropped ? d->crop[2] - d->crop[0] : d->width, height = cropped ? d->crop[3] - d->crop[1] : d->height;
+    uint64_t width = cropped ? d->crop[2] - d->crop[0] : d->width;
+    uint64_t height = cropped ? d->crop[3] - d->crop[1] : d->height;
     return width * height * bytes_per_pixel(d);
 }
 

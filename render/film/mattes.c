@@ -13,9 +13,10 @@ static bool holds(const kiln_film_desc *d, int t) {
 }
 
 bool film_allocate_ballots(kiln_film *f) {
-    for (int t = 0; t < FILM_BALLOTS; t++)
-        if (holds(&f->desc, t) && !(f->ballots[t] = aligned_array((size_t)f->width * f->height, sizeof(ballot)))) return false;
-    return true;
+    bool done = true;
+    for (int t = 0; done && t < FILM_BALLOTS; t++)
+        if (holds(&f->desc, t)) done = (f->ballots[t] = aligned_array((size_t)f->width * f->height, sizeof(ballot))) != NULL;
+    return done;
 }
 
 void film_free_ballots(kiln_film *f) {
@@ -29,7 +30,8 @@ uint64_t film_ballot_bytes(const kiln_film_desc *d) {
     return sum;
 }
 
-/* Cryptomatte specification, 'ID generation': an exponent of all zeros or ones would be a denormal, an infinity or NaN. */
+/* Cryptomatte specification, 'ID generation': an exponent of all zeros or ones would be a denormal, an infinity or NaN,
+ * which programs do not hand on as they are. */
 uint32_t kiln_matte_id(const char *name) {
     uint32_t hash = murmur3_32(name, strlen(name), 0), exponent = hash >> 23 & 0xff;
     exponent = exponent < 1 ? 1 : exponent > 254 ? 254 : exponent;
@@ -54,8 +56,10 @@ void film_count(kiln_film *f, size_t pixel, const film_sample *s) {
         [KILN_MATTE_OBJECT] = s->object, [KILN_MATTE_MATERIAL] = s->material, [KILN_MATTE_ASSET] = s->object};
     if (f->ballots[FILM_OBJECT]) ballot_add(&f->ballots[FILM_OBJECT][pixel], s->object);
     if (f->ballots[FILM_MATERIAL]) ballot_add(&f->ballots[FILM_MATERIAL][pixel], s->material);
-    for (int m = 0; m < KILN_MATTE_COUNT; m++)
-        if (f->ballots[FILM_MATTES + m]) ballot_add(&f->ballots[FILM_MATTES + m][pixel], f->names[m].items[handles[m]].id);
+    for (int m = 0; m < KILN_MATTE_COUNT; m++) {
+        ballot *all = f->ballots[FILM_MATTES + m];
+        if (all) ballot_add(&all[pixel], f->names[m].items[handles[m]].id);
+    }
 }
 
 /* By falling count, then by key. */

@@ -111,7 +111,8 @@ uint64_t film_part_bytes(const kiln_film_desc *d) { return (uint64_t)d->part_cou
 /* What the division leaves is a part too, unless it is there completely. */
 static bool has_rest(const kiln_film *f, int division) {
     static const uint32_t complete[KILN_DIVISION_COUNT] = {
-        [KILN_DIVISION_BOUNCE] = PATH_BOUNCES, [KILN_DIVISION_LOBE] = KILN_LOBE_COUNT, [KILN_DIVISION_LIGHT] = UINT32_MAX};
+        [KILN_DIVISION_BOUNCE] = PATH_BOUNCES, [KILN_DIVISION_LOBE] = KILN_LOBE_COUNT,
+        [KILN_DIVISION_LIGHT] = UINT32_MAX};
     uint32_t held = 0;
     for (uint32_t i = 0; i < f->parts.count; i++) held += f->parts.items[i].divisions >> division & 1;
     return held && held < complete[division] && !(division == KILN_DIVISION_LIGHT && f->parts.every_light);
@@ -140,7 +141,8 @@ static float share(fixed before, fixed with, fixed all, uint32_t samples) {
     if (!(beauty > 0)) return 0;
     (void)frexpf(beauty, &exponent);
     double digit = ldexp(1, exponent - 24 > -149 ? exponent - 24 : -149);
-    return (float)((rint(fixed_to_double(with) / samples / digit) - rint(fixed_to_double(before) / samples / digit)) * digit);
+    double to = rint(fixed_to_double(with) / samples / digit), from = rint(fixed_to_double(before) / samples / digit);
+    return (float)((to - from) * digit);
 }
 
 void kiln_film_part(const kiln_film *f, uint32_t index, float *rgb) {

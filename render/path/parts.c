@@ -11,7 +11,9 @@ void parts_begin(const path_parts_plan *plan, path_parts *p, uint32_t slots) {
 static fixed value_of(float radiance) { return fixed_fits(radiance) ? fixed_from_float(radiance) : 0; }
 
 /* share in [0, 1], of a value that fits. */
-static fixed scaled(fixed value, float share) { return fixed_from_float((float)(fixed_to_double(value) * (double)share)); }
+static fixed scaled(fixed value, float share) {
+    return fixed_from_float((float)(fixed_to_double(value) * (double)share));
+}
 
 static float channel(vec3 v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
 

@@ -34,7 +34,8 @@ static inline size_t path_parts_bytes(const path_parts_plan *p) {
 
 void parts_begin(const path_parts_plan *, path_parts *, uint32_t slots);
 
-/* radiance: of the path in slot, now. group: a part by the plan, that of the light. shares: not read for BOUNCE_EMISSION. */
+/* radiance: of the path in slot, now. group: a part by the plan, that of the light. shares: not read for
+ * BOUNCE_EMISSION. */
 void parts_record(const path_parts_plan *, path_parts *, uint32_t slot, vec3 radiance, path_bounce, uint8_t group,
                   const bsdf_parts *shares);
 

@@ -80,7 +80,8 @@ static void sum_to_the_picture(const layers *l, const char *const *names) {
                 sum += part[i];
             }
             if (memcmp(&sum, &picture[i], sizeof sum) != 0)
-                fail_msg("%s and others sum to %a in pixel %d, the picture is %a", names[0], (double)sum, i, (double)picture[i]);
+                fail_msg("%s and others sum to %a in pixel %d, the picture is %a", names[0], (double)sum, i,
+                         (double)picture[i]);
         }
     }
 }
@@ -125,7 +126,8 @@ static void parts_sum_to_the_picture(void **state) {
     layers l = shoot(*state, (const char *const[]){"aov", "direct,emission,indirect,lobe:*,lightgroup:*", NULL});
     sum_to_the_picture(&l, (const char *const[]){"emission", "direct", "indirect", NULL});
     sum_to_the_picture(&l, (const char *const[]){"specular", "transmission", "emission", "diffuse", NULL});
-    sum_to_the_picture(&l, (const char *const[]){"lightgroup_environment", "lightgroup_Key_001", "lightgroup_material_4", NULL});
+    sum_to_the_picture(&l, (const char *const[]){"lightgroup_environment", "lightgroup_Key_001",
+                                                 "lightgroup_material_4", NULL});
     assert_int_equal(l.count, 3 * (1 + 3 + 3 + 3));
     forget(&l);
 }

@@ -28,7 +28,7 @@ static void place(scene_builder *b, kiln_id mesh, const char *name, const char *
     must(kiln_scene_add_instance(b->scene, &desc, NULL, b->report), b->report, "placing");
 }
 
-/* A square that leans, seen a kilometre from the origin; edges cut through pixels. Instances `shown` (bits) are there. */
+/* Squares that lean, a kilometre from the origin; edges cut through pixels. Instances `shown` (bits) are there. */
 static scene_builder squares(unsigned shown) {
     static const struct { const char *name, *asset; double x, z; } things[THINGS] = {
         {"left", "pair", -.6, 0}, {"right", "pair", .5, 0}, {NULL, NULL, 0, -.5}, {"left", NULL, 0, -1}};
@@ -38,8 +38,8 @@ static scene_builder squares(unsigned shown) {
     scene_builder b = builder_make();
     for (unsigned i = 0; i < THINGS; i++) {
         kiln_id mesh, material = named(&b, i == 1 ? "red" : i == 2 ? NULL : "blue");
-        kiln_mesh_desc desc = {.name = "square", .vertex_count = 4, .positions = p, .face_count = 2, .face_vertices = faces,
-                               .primvars = &primvar, .primvar_count = 1, .material = material};
+        kiln_mesh_desc desc = {.name = "square", .vertex_count = 4, .positions = p, .face_count = 2,
+                               .face_vertices = faces, .primvars = &primvar, .primvar_count = 1, .material = material};
         must(kiln_scene_add_mesh(b.scene, &desc, &mesh, b.report), b.report, "adding a square");
         if (shown >> i & 1) place(&b, mesh, things[i].name, things[i].asset, things[i].x, things[i].z);
     }

@@ -52,7 +52,8 @@ static void sums_are_exact(const kiln_film *f, const float *beauty, bool backwar
         }
         for (size_t k = 0; there && k < 3 * pixels; k++)
             if (memcmp(&sum[k], &beauty[k], sizeof *sum) != 0)
-                fail_msg("division %d, value %zu: the parts sum to %a, the beauty is %a", d, k, (double)sum[k], (double)beauty[k]);
+                fail_msg("division %d, value %zu: the parts sum to %a, the beauty is %a", d, k, (double)sum[k],
+                         (double)beauty[k]);
     }
     free(sum);
     free(part);
@@ -82,8 +83,9 @@ static void divisions_are_complete(const kiln_film *f) {
 /* Every kind of light and of surface; with parts the beauty has the bits that it has without. */
 static void parts_sum_to_the_beauty(void **state) {
     (void)state;
-    const kiln_render_options kinds[] = {{.seed = 1}, {.estimator = KILN_ESTIMATOR_NEE}, {.estimator = KILN_ESTIMATOR_BSDF},
-                                         {.max_depth = 2}, {.background = KILN_BACKGROUND_COLOR, .background_color = {1, 2, 3}}};
+    const kiln_render_options kinds[] = {
+        {.seed = 1}, {.estimator = KILN_ESTIMATOR_NEE}, {.estimator = KILN_ESTIMATOR_BSDF}, {.max_depth = 2},
+        {.background = KILN_BACKGROUND_COLOR, .background_color = {1, 2, 3}}};
     scene_builder b = builder_make();
     add_everything(&b);
     must(kiln_scene_commit(b.scene, b.report), b.report, "committing");
@@ -130,7 +132,8 @@ static room room_of(const kiln_material *floor, int lights) {
     for (int k = 0; k < 3; k++) lamp.emission.value[k] = lights & LAMP ? 5 : 0;
     lamp.double_sided = true;
     add_quad(&r.b, add_material(&r.b, floor), (float[12]){-2, 0, 2, 2, 0, 2, 2, 0, -2, -2, 0, -2});
-    add_quad(&r.b, add_material(&r.b, &lamp), (float[12]){-.5f, 1.2f, -1, .5f, 1.2f, -1, .5f, 1.7f, -1, -.5f, 1.7f, -1});
+    add_quad(&r.b, add_material(&r.b, &lamp),
+             (float[12]){-.5f, 1.2f, -1, .5f, 1.2f, -1, .5f, 1.7f, -1, -.5f, 1.7f, -1});
     kiln_light point = light_at(KILN_LIGHT_POINT, (float[3]){1, 1, 0}, (float[3]){0, 0, 0}, 1);
     kiln_light sun = light_at(KILN_LIGHT_DISTANT, (float[3]){-1, 3, 1}, (float[3]){0, 0, 0}, 0.5f);
     point.name = "key", sun.name = "key2", sun.angle_rad = 0.2f;
@@ -142,7 +145,8 @@ static room room_of(const kiln_material *floor, int lights) {
 static picture shoot(room *r, const names *n, kiln_estimator estimator, uint32_t spp) {
     kiln_renderer *renderer;
     must(kiln_renderer_create(r->b.scene, NULL, &renderer, r->b.report), r->b.report, "making a renderer");
-    kiln_film_desc desc = {.width = WIDTH, .height = HEIGHT, .parts = n ? n->items : NULL, .part_count = n ? n->count : 0};
+    kiln_film_desc desc = {.width = WIDTH, .height = HEIGHT};
+    if (n) desc.parts = n->items, desc.part_count = n->count;
     kiln_render_options o = {.camera = &r->view, .spp = spp, .estimator = estimator};
     picture p = render_with(renderer, &o, &desc, r->b.report);
     kiln_renderer_destroy(renderer);
@@ -191,7 +195,7 @@ static void groups_are_pictures_of_one_light(void **state) {
     builder_free(&all.b);
 }
 
-/* What a lobe sends on does not depend on whether light was sampled or found: the two share it out in different code. */
+/* What a lobe sends on does not depend on whether light was sampled or found, which are shared out by different code. */
 static void lobes_do_not_depend_on_the_estimator(void **state) {
     (void)state;
     static const char *const lobes[] = {"emission", "lobe:diffuse", "lobe:specular", "direct"};
@@ -202,7 +206,8 @@ static void lobes_do_not_depend_on_the_estimator(void **state) {
     names n;
     name_all(&n, &r.b);
     picture nee = shoot(&r, &n, KILN_ESTIMATOR_NEE, 256), bsdf = shoot(&r, &n, KILN_ESTIMATOR_BSDF, 256);
-    for (int i = 0; i < 4; i++) close_to(mean_of_part(bsdf.film, lobes[i]), mean_of_part(nee.film, lobes[i]), 0.03, lobes[i]);
+    for (int i = 0; i < 4; i++)
+        close_to(mean_of_part(bsdf.film, lobes[i]), mean_of_part(nee.film, lobes[i]), 0.03, lobes[i]);
     assert_true(mean_of_part(nee.film, "lobe:diffuse") > 0 && mean_of_part(nee.film, "lobe:specular") > 0);
     assert_true(mean_of_part(nee.film, "lobe:transmission") == 0 && mean_of_part(nee.film, "emission") > 0);
     close_to(mean_of_part(bsdf.film, "indirect"), mean_of_part(nee.film, "indirect"), 0.1, "indirect"); /* rare */
@@ -255,8 +260,8 @@ static void wrong_names_are_refused(void **state) {
     r = room_of(&floor, POINT);
     must(kiln_scene_commit(r.b.scene, r.b.report), r.b.report, "committing");
     const char *missing = "lightgroup:kye";
-    must(kiln_film_create(&(kiln_film_desc){.width = 1, .height = 1, .parts = &missing, .part_count = 1}, &film, r.b.report),
-         r.b.report, "making a film");
+    const kiln_film_desc desc = {.width = 1, .height = 1, .parts = &missing, .part_count = 1};
+    must(kiln_film_create(&desc, &film, r.b.report), r.b.report, "making a film");
     kiln_renderer *renderer;
     must(kiln_renderer_create(r.b.scene, NULL, &renderer, r.b.report), r.b.report, "making a renderer");
     assert_false(kiln_render(renderer, &(kiln_render_options){.camera = &r.view, .spp = 1}, film, NULL, r.b.report));
