@@ -62,7 +62,8 @@ bool run_film(job_run *r) {
 
 bool run_build(job_run *r) {
     if (r->renderer) return true;
-    kiln_renderer_options options = {r->options->threads, r->options->embree_config, &r->decoding};
+    kiln_renderer_options options = {r->options->threads, r->options->embree_config, &r->decoding,
+                                     r->options->texture_filter};
     if (!kiln_renderer_create(r->scene, &options, &r->renderer, r->report)) return false;
     r->memory = kiln_renderer_describe_memory(r->renderer);
     return true;

@@ -9,6 +9,8 @@ static const option_choice samplers[] = {
     {"sobol", KILN_SAMPLER_SOBOL}, {"independent", KILN_SAMPLER_INDEPENDENT}, {NULL, 0}};
 static const option_choice light_samplings[] = {
     {"power", KILN_LIGHTS_POWER}, {"uniform", KILN_LIGHTS_UNIFORM}, {NULL, 0}};
+static const option_choice texture_filters[] = {
+    {"bilinear", KILN_TEXTURES_BILINEAR}, {"mip", KILN_TEXTURES_MIP}, {NULL, 0}};
 static const option_choice schemes[] = {{"auto", KILN_SCHEME_AUTO},
                                         {"catmull-clark", KILN_SCHEME_CATMULL_CLARK},
                                         {"loop", KILN_SCHEME_LOOP},
@@ -64,6 +66,9 @@ static const option_row rows[] = {
      &option_choices, samplers, FIELD(sampler)},
     {"light-sampling", 0, "NAME", estimator, "how a light is chosen: power or uniform", "power", NULL,
      "a way of choosing lights", &option_choices, light_samplings, FIELD(light_sampling)},
+    {"texture-filter", 0, "NAME", estimator,
+     "textures seen small: bilinear, always from the picture, or mip, from pyramids by the footprint of the path",
+     "bilinear", NULL, "a texture filter", &option_choices, texture_filters, FIELD(texture_filter)},
 
     {"camera", 0, "NAME|INDEX|auto", camera, "a camera of the file, counted from 0; auto frames the scene", NULL,
      "the first of the file, else auto", "the name of a camera", &option_text, FIELD(camera), .also = JOB_INSPECT},

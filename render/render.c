@@ -24,7 +24,8 @@ bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *
     if (!r) return report_no_memory(report, "making the renderer");
     r->scene = scene;
     r->threads = options->threads ? options->threads : threads_available();
-    if (!world_create(scene, given ? options->decoding : &rec709, r->threads, options->embree_config, &r->world, report)) {
+    if (!world_create(scene, given ? options->decoding : &rec709, options->texture_filter, r->threads,
+                      options->embree_config, &r->world, report)) {
         free(r);
         return false;
     }

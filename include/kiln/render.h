@@ -24,10 +24,17 @@ typedef struct kiln_decoding {
     float matrix[KILN_TRANSFER_COUNT][9];  /* row-major, after the curve: into the working space */
 } kiln_decoding;
 
+/* How textures that are seen small are looked up; docs/textures.md has what each costs and errs. */
+typedef enum kiln_texture_filter {
+    KILN_TEXTURES_BILINEAR, /* between four texels of the picture, at any distance: the pixel's samples filter */
+    KILN_TEXTURES_MIP       /* from pyramids, by the footprint of the path: never more than half of it is averaged */
+} kiln_texture_filter;
+
 typedef struct kiln_renderer_options {
     uint32_t threads;          /* of building, and of each kiln_render; 0: every core that the process may use */
     const char *embree_config; /* rtcNewDevice's string, "isa=avx2"; NULL: none */
     const kiln_decoding *decoding; /* NULL: linear Rec.709 */
+    kiln_texture_filter texture_filter;
 } kiln_renderer_options;
 
 /* Reads scene, which must be committed, for as long as the renderer lives; the options during the call. On failure

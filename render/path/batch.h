@@ -35,6 +35,9 @@ enum {
 /* The same, where the world has solids: the stack of media around the origin (medium.h). */
 #define PATH_MEDIA(X) X(uint64_t, media)
 
+/* The cone of the path (cone.h): in scenes that filter textures, moved too. */
+#define PATH_CONE(X) X(float, width) X(float, spread)
+
 /* Where the ray has met a surface: moved with the path, once. */
 #define PATH_HIT(X) X(float, t) X(float, u) X(float, v) X(uint32_t, triangle) X(uint32_t, instance)
 
@@ -42,7 +45,7 @@ enum {
 #define PATH_TOUCH(X) X(uint64_t, beyond)
 
 #define LANE_ARRAY(type, name) _Alignas(64) type name[LANES];
-typedef struct path_state { PATH_STATE(LANE_ARRAY) PATH_MEDIA(LANE_ARRAY) } path_state;
+typedef struct path_state { PATH_STATE(LANE_ARRAY) PATH_MEDIA(LANE_ARRAY) PATH_CONE(LANE_ARRAY) } path_state;
 typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit;
 
 /* A triangle's corners, in render space. */
@@ -64,6 +67,13 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
     X(float, area)                               /* of the triangle */                                                 \
     X(float, front)                              /* 1: seen from the front, 0: from behind */                          \
     X(float, tu) X(float, tv)                    /* UV of the first set */
+
+/* The cone at the point, where textures are filtered. */
+#define CONE_FIELDS(X)                                                                                                 \
+    X(float, across)                             /* its width */                                                       \
+    X(float, foot_uu) X(float, foot_uv) X(float, foot_vv) /* texture_footprint in the first UV set */                  \
+    X(float, curve_low) X(float, curve_high)     /* principal curvatures, on wo's side */                              \
+    X(float, came_x) X(float, came_y) X(float, came_z) /* direction of the ray that met the point */
 
 /* What the material says there. */
 #define MATERIAL_FIELDS(X)                                                                                             \
@@ -107,6 +117,7 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
 typedef struct path_scratch {
     TRIANGLE_FIELDS(LANE_ARRAY)
     POINT_FIELDS(LANE_ARRAY)
+    CONE_FIELDS(LANE_ARRAY)
     MATERIAL_FIELDS(LANE_ARRAY)
     LIGHT_FIELDS(LANE_ARRAY)
     CHOSEN_FIELDS(LANE_ARRAY)

@@ -11,6 +11,7 @@
 static void look_at_surfaces(const path_context *c, batch *b) {
     STAGE(fetch)(c, b);
     STAGE(surface)(c, b);
+    if (c->world->filters) STAGE(cone_hit)(c, b);
     STAGE(material)(c, b);
     if (c->world->media_count > 1) STAGE(boundary)(c, b);
     STAGE(normal)(c, b);
@@ -19,6 +20,7 @@ static void look_at_surfaces(const path_context *c, batch *b) {
 void STAGE(trace_samples)(const path_context *c, const path_sample *samples, uint32_t count, batch *b) {
     const world *w = c->world;
     STAGE(camera)(c, samples, count, b);
+    if (w->filters) STAGE(cone_start)(c, b);
     while (b->n > 0) {
         STAGE(trace)(c, b);
         if (w->touches) STAGE(touch)(c, b);
@@ -42,6 +44,7 @@ void STAGE(trace_samples)(const path_context *c, const path_sample *samples, uin
         }
         if (c->parts && b->depth == 0) STAGE(part_scatter)(c, b);
         STAGE(scatter)(c, b);
+        if (w->filters) STAGE(cone_scatter)(c, b);
         STAGE(close)(c, b);
         b->depth++;
     }

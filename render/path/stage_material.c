@@ -1,3 +1,4 @@
+#include "render/path/cone.h"
 #include "render/path/stages.h"
 
 static void load_diffuse(const world *w, path_scratch *x, uint32_t i) {
@@ -60,28 +61,39 @@ static void load_normal_map(const world *w, const path_hit *h, path_scratch *x, 
     x->tan_w[i] = a[3] * copy->side;
 }
 
+/* What the path's cone covers of a UV set. */
+static texture_footprint footprint(const world *w, const path_hit *h, const path_scratch *x, uint32_t i, uint32_t set) {
+    if (!set) return (texture_footprint){x->foot_uu[i], x->foot_uv[i], x->foot_vv[i]};
+    const uint32_t *v = w->triangles + 3 * (size_t)h->triangle[i];
+    const float *uv = w->uvs[set], *a = uv + 2 * (size_t)v[0], *p = uv + 2 * (size_t)v[1], *q = uv + 2 * (size_t)v[2];
+    vec3 p0 = {x->p0x[i], x->p0y[i], x->p0z[i]};
+    vec3 e1 = v3_sub(v3(x->p1x[i], x->p1y[i], x->p1z[i]), p0), e2 = v3_sub(v3(x->p2x[i], x->p2y[i], x->p2z[i]), p0);
+    return cone_footprint(x->across[i], e1, e2, (vec2){p[0] - a[0], p[1] - a[1]}, (vec2){q[0] - a[0], q[1] - a[1]});
+}
+
 static void apply_texture(const world *w, const path_hit *h, path_scratch *x, uint32_t i, material_slot slot,
                           const world_texture *t) {
     vec2 uv = t->uv_set ? further_uv(w, h, i, t->uv_set) : (vec2){x->tu[i], x->tv[i]};
+    int32_t level = t->levels ? texture_level(t, footprint(w, h, x, i, t->uv_set)) : 0;
     texel c;
     switch (slot) {
     case SLOT_BASE:
-        c = texture_sample(t, uv.x, uv.y);
+        c = texture_sample_level(t, uv.x, uv.y, level);
         x->base_r[i] *= c.r, x->base_g[i] *= c.g, x->base_b[i] *= c.b;
         break;
     case SLOT_EMISSION:
-        c = texture_sample(t, uv.x, uv.y);
+        c = texture_sample_level(t, uv.x, uv.y, level);
         x->emit_r[i] *= c.r, x->emit_g[i] *= c.g, x->emit_b[i] *= c.b;
         break;
     case SLOT_SPECULAR_COLOR:
-        c = texture_sample(t, uv.x, uv.y);
+        c = texture_sample_level(t, uv.x, uv.y, level);
         x->tint_r[i] *= c.r, x->tint_g[i] *= c.g, x->tint_b[i] *= c.b;
         break;
-    case SLOT_METALLIC: x->metallic[i] *= texture_channel(t, uv.x, uv.y); break;
-    case SLOT_ROUGHNESS: x->roughness[i] *= texture_channel(t, uv.x, uv.y); break;
-    case SLOT_SPECULAR: x->specular[i] *= texture_channel(t, uv.x, uv.y); break;
-    case SLOT_TRANSMISSION: x->transmission[i] *= texture_channel(t, uv.x, uv.y); break;
-    case SLOT_NORMAL: load_normal_map(w, h, x, i, texture_sample(t, uv.x, uv.y)); break;
+    case SLOT_METALLIC: x->metallic[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_ROUGHNESS: x->roughness[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_SPECULAR: x->specular[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_TRANSMISSION: x->transmission[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_NORMAL: load_normal_map(w, h, x, i, texture_sample_level(t, uv.x, uv.y, level)); break;
     case SLOT_OPACITY:
     case SLOT_COUNT: break;
     }

@@ -19,6 +19,9 @@ static void move(const world *w, batch *b, uint32_t count, bool with_hits) {
     if (w->media_count > 1) {
         PATH_MEDIA(MOVE_STATE)
     }
+    if (w->filters) {
+        PATH_CONE(MOVE_STATE)
+    }
     if (with_hits) {
         PATH_HIT(MOVE_HIT)
     }

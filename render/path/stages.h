@@ -30,6 +30,10 @@ void STAGE(sort)(const path_context *, batch *);
 void STAGE(fetch)(const path_context *, batch *);
 /* The hit point, its normals, and how far from the surface rays must start. */
 void STAGE(surface)(const path_context *, batch *);
+/* Where textures are filtered: the cones of the pixels; what they cover at the hit points; how bounces change them. */
+void STAGE(cone_start)(const path_context *, batch *);
+void STAGE(cone_hit)(const path_context *, batch *);
+void STAGE(cone_scatter)(const path_context *, batch *);
 /* The medium around the ray takes its share. */
 void STAGE(absorb)(const path_context *, batch *);
 /* What the materials say: constants, then textures. */

@@ -8,6 +8,7 @@
 #include "base/arena.h"
 #include "base/threads.h"
 #include "image/image.h"
+#include "render/world/mips.h"
 #include "scene/transfer.h"
 
 static size_t format_bytes(kiln_pixel_format format) {
@@ -65,6 +66,28 @@ const void *image_texels(const world_image *image, kiln_transfer transfer, texel
     return image->texels[place];
 }
 
+static uint32_t levels_of(const world_image *image, kiln_transfer transfer, texel_domain domain) {
+    uint32_t place = place_of(image->format, transfer, domain);
+    return image->format == KILN_PIXELS_U8 ? (uint32_t)transfer : place ? KILN_TRANSFER_COUNT - 1 + place : 0;
+}
+
+const void *image_levels(const world_image *image, kiln_transfer transfer, texel_domain domain) {
+    return image->filtered & image_use(transfer, domain) ? image->levels[levels_of(image, transfer, domain)] : NULL;
+}
+
+/* The pyramid for a use, unless it is there already. */
+static bool make_levels(world_image *image, kiln_transfer transfer, texel_domain domain, const float *curve,
+                        kiln_report *report) {
+    void **levels = &image->levels[levels_of(image, transfer, domain)];
+    texture_grid grid = {.width = (int32_t)image->width, .height = (int32_t)image->height, .curve = curve};
+    grid.texels = image_texels(image, transfer, domain, &grid.format);
+    if (*levels || (grid.format == KILN_PIXELS_U8 && !mips_take(curve))) return true;
+    size_t bytes;
+    *levels = mips_make(&grid, &bytes);
+    image->bytes += bytes;
+    return *levels || report_no_memory(report, "filtering textures");
+}
+
 static bool into_domain(float *value, float high) {
     bool inside = *value >= 0 && *value <= high;
     if (!inside) *value = *value > high && *value < INFINITY ? high : 0.0f;
@@ -105,22 +128,26 @@ static bool make_texels(world_image *image, const kiln_image *pixels, kiln_trans
     return image->texels[place] || report_no_memory(report, "decoding textures");
 }
 
-static bool make_all_texels(world_image *image, const kiln_image *pixels, const kiln_where *where,
-                            kiln_report *report) {
+static bool make_all_texels(world_image *image, const kiln_image *pixels, float curves[KILN_TRANSFER_COUNT][256],
+                            const kiln_where *where, kiln_report *report) {
     image->width = pixels->width;
     image->height = pixels->height;
     image->format = pixels->format;
     for (int d = 0; d < TEXEL_DOMAINS; d++)
-        for (int t = 0; t < KILN_TRANSFER_COUNT; t++)
-            if (image->wanted & image_use((kiln_transfer)t, (texel_domain)d) &&
-                !make_texels(image, pixels, (kiln_transfer)t, (texel_domain)d, where, report))
+        for (int t = 0; t < KILN_TRANSFER_COUNT; t++) {
+            uint32_t use = image_use((kiln_transfer)t, (texel_domain)d);
+            if (image->wanted & use && !make_texels(image, pixels, (kiln_transfer)t, (texel_domain)d, where, report))
                 return false;
+            if (image->filtered & use && !make_levels(image, (kiln_transfer)t, (texel_domain)d, curves[t], report))
+                return false;
+        }
     return true;
 }
 
 typedef struct decode_job {
     world_image *images;
     const kiln_scene *scene;
+    float (*curves)[256];
     kiln_report *report;
     atomic_bool failed;
 } decode_job;
@@ -137,12 +164,13 @@ static void decode_one(void *context, size_t index, uint32_t thread) {
         return;
     }
     kiln_where where = where_root(scene_image_place(&job->scene->images[index]));
-    if (!make_all_texels(image, &pixels, &where, job->report)) atomic_store(&job->failed, true);
+    if (!make_all_texels(image, &pixels, job->curves, &where, job->report)) atomic_store(&job->failed, true);
     if (owned) image_free(&pixels);
 }
 
-bool images_decode(world_image *images, const kiln_scene *scene, uint32_t threads, kiln_report *report) {
-    decode_job job = {images, scene, report, false};
+bool images_decode(world_image *images, const kiln_scene *scene, float curves[KILN_TRANSFER_COUNT][256],
+                   uint32_t threads, kiln_report *report) {
+    decode_job job = {images, scene, curves, report, false};
     threads_for(threads, scene->image_count, decode_one, &job);
     return !job.failed;
 }
@@ -171,8 +199,10 @@ bool images_check(const world_image *images, const kiln_scene *scene, uint32_t t
 }
 
 void images_free(world_image *images, uint32_t count) {
-    for (uint32_t i = 0; images && i < count; i++)
+    for (uint32_t i = 0; images && i < count; i++) {
         for (int k = 0; k < 1 + 2 * TEXEL_DOMAINS; k++) free(images[i].texels[k]);
+        for (int k = 0; k < KILN_TRANSFER_COUNT + 2 * TEXEL_DOMAINS; k++) free(images[i].levels[k]);
+    }
     free(images);
 }
 

@@ -20,8 +20,10 @@ typedef struct world_image {
     uint32_t width, height;
     kiln_pixel_format format;
     void *texels[1 + 2 * TEXEL_DOMAINS]; /* [0]: codes */
+    void *levels[KILN_TRANSFER_COUNT + 2 * TEXEL_DOMAINS]; /* pyramids: of 8-bit codes by curve, of others by array */
     size_t bytes;                        /* of all */
     uint32_t wanted;                     /* bits of image_use */
+    uint32_t filtered;                   /* those of them that want a pyramid */
 } world_image;
 
 static inline uint32_t image_use(kiln_transfer transfer, texel_domain domain) {
@@ -30,9 +32,13 @@ static inline uint32_t image_use(kiln_transfer transfer, texel_domain domain) {
 /* The texels for a use that was wanted, after images_decode; *format is theirs. */
 const void *image_texels(const world_image *, kiln_transfer, texel_domain, kiln_pixel_format *format);
 
+/* The pyramid of a use that was to be filtered; NULL: it has none. */
+const void *image_levels(const world_image *, kiln_transfer, texel_domain);
+
 /* Decodes all images with wanted != 0, in parallel. images has one entry per image of the scene. Warns of floats outside
  * the domain. false: reported. */
-bool images_decode(world_image *images, const kiln_scene *, uint32_t threads, kiln_report *);
+bool images_decode(world_image *images, const kiln_scene *, float curves[KILN_TRANSFER_COUNT][256], uint32_t threads,
+                   kiln_report *);
 /* The same for the errors alone: all of them, and no pixel is kept. */
 bool images_check(const world_image *images, const kiln_scene *, uint32_t threads, kiln_report *);
 void images_free(world_image *images, uint32_t count);

@@ -4,6 +4,7 @@
 
 #include "render/world/images.h"
 #include "render/world/media.h"
+#include "render/world/mips.h"
 #include "render/world/world.h"
 #include "scene/transfer.h"
 
@@ -19,6 +20,7 @@ typedef struct builder {
     const kiln_scene *scene;
     const kiln_decoding *decoding;
     world_image *images;
+    kiln_texture_filter filter;
     uint32_t uv_sets[WORLD_UV_SETS];
     uint32_t uv_set_count;
     kiln_report *report;
@@ -56,6 +58,13 @@ static texel_domain domain_of(material_slot slot) {
     return slot == SLOT_EMISSION || slot == SLOT_SPECULAR_COLOR ? TEXELS_POSITIVE : TEXELS_UNIT;
 }
 
+/* What may be averaged: where coverage decides what is seen of a texel, its neighbours would bleed into it; emission
+ * is sampled by lights too, without a footprint; the mean of normals is no normal of a rougher surface. */
+static bool is_filtered(const kiln_material *m, const slot_use *use) {
+    return m->alpha_mode == KILN_ALPHA_OPAQUE && use->texture->filter == KILN_FILTER_LINEAR &&
+           use->slot != SLOT_EMISSION && use->slot != SLOT_OPACITY && use->slot != SLOT_NORMAL;
+}
+
 static bool is_identity(const float m[9]) {
     static const float identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     return memcmp(m, identity, sizeof identity) == 0;
@@ -78,7 +87,7 @@ static void set_matrix(world_texture *t, const float matrix[9], const float *fac
     for (int i = 0; t->has_matrix && i < 9; i++) t->matrix[i] = matrix[i] * (factor ? factor[i % 3] : 1.0f);
 }
 
-static bool add_texture(builder *b, const slot_use *use, uint32_t *handle) {
+static bool add_texture(builder *b, const kiln_material *m, const slot_use *use, uint32_t *handle) {
     const kiln_texture *from = use->texture;
     const world_image *image = &b->images[from->image - 1];
     world_texture t = {
@@ -91,6 +100,9 @@ static bool add_texture(builder *b, const slot_use *use, uint32_t *handle) {
         .curve = b->world->curves[from->transfer],
     };
     t.texels = image_texels(image, from->transfer, domain_of(use->slot), &t.format);
+    if (is_filtered(m, use)) t.levels = image_levels(image, from->transfer, domain_of(use->slot));
+    t.level_count = mips_count(t.width, t.height);
+    b->world->filters |= t.levels != NULL;
     if (!find_uv_set(b, from->uv_set, &t.uv_set)) return false;
     memcpy(t.transform, from->transform, sizeof t.transform);
     set_matrix(&t, b->decoding->matrix[from->transfer], use->factor);
@@ -128,7 +140,7 @@ static bool set_textures(builder *b, world_material *m, const kiln_material *fro
     slot_use uses[SLOT_COUNT];
     int n = list_slots(from, uses);
     for (int i = 0; i < n; i++) {
-        if (!add_texture(b, &uses[i], &m->texture[uses[i].slot])) return false;
+        if (!add_texture(b, from, &uses[i], &m->texture[uses[i].slot])) return false;
         if (uses[i].slot != SLOT_OPACITY) b->world->slots |= 1u << uses[i].slot;
         /* The factor went into the texture's matrix. */
         float *constant = uses[i].slot == SLOT_BASE       ? m->base
@@ -157,8 +169,12 @@ static uint32_t want_images(builder *b, const bool *used) {
     for (uint32_t i = 0; i <= b->scene->material_count; i++) {
         slot_use uses[SLOT_COUNT];
         int n = used[i] ? list_slots(scene_material(b->scene, i), uses) : 0;
-        for (int k = 0; k < n; k++)
-            b->images[uses[k].texture->image - 1].wanted |= image_use(uses[k].texture->transfer, domain_of(uses[k].slot));
+        for (int k = 0; k < n; k++) {
+            world_image *image = &b->images[uses[k].texture->image - 1];
+            uint32_t use = image_use(uses[k].texture->transfer, domain_of(uses[k].slot));
+            image->wanted |= use;
+            if (b->filter == KILN_TEXTURES_MIP && is_filtered(scene_material(b->scene, i), &uses[k])) image->filtered |= use;
+        }
         textures += (uint32_t)n;
     }
     return textures;
@@ -167,7 +183,7 @@ static uint32_t want_images(builder *b, const bool *used) {
 static bool build(builder *b, const bool *used, uint32_t threads) {
     world *w = b->world;
     uint32_t textures = want_images(b, used);
-    if (!images_decode(b->images, b->scene, threads, b->report)) return false;
+    if (!images_decode(b->images, b->scene, w->curves, threads, b->report)) return false;
     w->material_count = b->scene->material_count + 1;
     w->materials = ARENA_ARRAY(&w->arena, world_material, w->material_count);
     w->textures = ARENA_ARRAY(&w->arena, world_texture, (size_t)textures + 1);
@@ -187,13 +203,14 @@ static bool build(builder *b, const bool *used, uint32_t threads) {
     return world_build_media(w, b->scene, b->decoding, used, b->report);
 }
 
-bool world_build_materials(world *w, const kiln_scene *scene, const kiln_decoding *decoding, uint32_t threads,
-                           kiln_report *report) {
+bool world_build_materials(world *w, const kiln_scene *scene, const kiln_decoding *decoding,
+                           kiln_texture_filter filter, uint32_t threads, kiln_report *report) {
     bool *used = mark_used(scene);
     memcpy(w->curves, decoding->curve, sizeof w->curves);
     w->image_count = scene->image_count;
     w->images = array_alloc(scene->image_count, sizeof *w->images);
-    builder b = {.world = w, .scene = scene, .decoding = decoding, .images = w->images, .report = report,
+    builder b = {.world = w, .scene = scene, .decoding = decoding, .images = w->images, .filter = filter,
+                 .report = report,
                  .uv_set_count = 1}; /* set 0, which vertices have room for, whether textures read it or not */
     bool done = used && w->images ? build(&b, used, threads) : report_no_memory(report, "building materials");
     free(used);

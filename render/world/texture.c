@@ -15,7 +15,7 @@ static int32_t edge(kiln_wrap mode, int32_t i, int32_t n) {
     return i < 0 ? 0 : i >= n ? n - 1 : i;
 }
 
-static texel load(const world_texture *t, int32_t x, int32_t y) {
+texel texture_load(const texture_grid *t, int32_t x, int32_t y) {
     size_t at = 4 * ((size_t)y * (size_t)t->width + (size_t)x);
     if (t->format == KILN_PIXELS_U8) {
         const uint8_t *p = (const uint8_t *)t->texels + at;
@@ -34,30 +34,57 @@ static texel mix(texel a, texel b, float t) {
     return (texel){a.r + t * (b.r - a.r), a.g + t * (b.g - a.g), a.b + t * (b.b - a.b), a.a + t * (b.a - a.a)};
 }
 
-static texel filtered(const world_texture *t, float u, float v) {
+/* Level 0 is the picture. */
+static texture_grid grid_at(const world_texture *t, int32_t level) {
+    texture_grid g = {t->texels, t->width, t->height, t->format, t->curve};
+    if (level > 0) g = texture_grid_above(&g, t->levels);
+    size_t size = g.format == KILN_PIXELS_F32 ? sizeof(float[4]) : sizeof(uint16_t[4]);
+    for (int32_t k = 1; k < level; k++)
+        g = texture_grid_above(&g, (const unsigned char *)g.texels + size * (size_t)g.width * (size_t)g.height);
+    return g;
+}
+
+int32_t texture_level(const world_texture *t, texture_footprint f) {
+    if (!t->levels) return 0;
+    /* In texels: A F Aᵀ, A = size · transform. */
+    const float *m = t->transform, w = (float)t->width, h = (float)t->height;
+    float a = w * m[0], b = w * m[1], c = h * m[3], d = h * m[4];
+    float fx = f.xx * a + f.xy * b, fy = f.xy * a + f.yy * b, gx = f.xx * c + f.xy * d, gy = f.xy * c + f.yy * d;
+    float squared = metric2_least((metric2){fx * a + fy * b, fx * c + fy * d, gx * c + gy * d});
+    if (!(squared >= 16.0f)) return 0; /* also what is not a number */
+    int32_t level = ((int32_t)(fm_bits(squared) >> 23) - 127) / 2 - 1; /* ⌊log₂(axis / 2)⌋ */
+    return level < t->level_count ? level : t->level_count;
+}
+
+static texel filtered(const world_texture *t, float u, float v, int32_t level) {
     const float *m = t->transform;
-    float x = wrap(t->wrap_u, m[0] * u + m[1] * v + m[2]) * (float)t->width;
-    float y = wrap(t->wrap_v, m[3] * u + m[4] * v + m[5]) * (float)t->height;
+    texture_grid g = grid_at(t, level);
+    float x = wrap(t->wrap_u, m[0] * u + m[1] * v + m[2]) * (float)g.width;
+    float y = wrap(t->wrap_v, m[3] * u + m[4] * v + m[5]) * (float)g.height;
     if (t->nearest) {
         int32_t i = (int32_t)x, j = (int32_t)y;
-        return load(t, i < t->width ? i : t->width - 1, j < t->height ? j : t->height - 1);
+        return texture_load(&g, i < g.width ? i : g.width - 1, j < g.height ? j : g.height - 1);
     }
     /* Texel centres lie at halves. */
     float xf = fm_floor(x - 0.5f), yf = fm_floor(y - 0.5f), fx = x - 0.5f - xf, fy = y - 0.5f - yf;
     int32_t i = (int32_t)xf, j = (int32_t)yf;
-    int32_t i0 = edge(t->wrap_u, i, t->width), i1 = edge(t->wrap_u, i + 1, t->width);
-    int32_t j0 = edge(t->wrap_v, j, t->height), j1 = edge(t->wrap_v, j + 1, t->height);
-    return mix(mix(load(t, i0, j0), load(t, i1, j0), fx), mix(load(t, i0, j1), load(t, i1, j1), fx), fy);
+    int32_t i0 = edge(t->wrap_u, i, g.width), i1 = edge(t->wrap_u, i + 1, g.width);
+    int32_t j0 = edge(t->wrap_v, j, g.height), j1 = edge(t->wrap_v, j + 1, g.height);
+    return mix(mix(texture_load(&g, i0, j0), texture_load(&g, i1, j0), fx),
+               mix(texture_load(&g, i0, j1), texture_load(&g, i1, j1), fx), fy);
 }
 
-texel texture_sample(const world_texture *t, float u, float v) {
-    texel c = filtered(t, u, v);
+texel texture_sample_level(const world_texture *t, float u, float v, int32_t level) {
+    texel c = filtered(t, u, v, level);
     if (!t->has_matrix) return c;
     vec3 rgb = v3_transform(t->matrix, v3(c.r, c.g, c.b));
     return (texel){rgb.x, rgb.y, rgb.z, c.a};
 }
 
-float texture_channel(const world_texture *t, float u, float v) {
-    texel c = filtered(t, u, v);
+float texture_channel_level(const world_texture *t, float u, float v, int32_t level) {
+    texel c = filtered(t, u, v, level);
     return t->channel == 0 ? c.r : t->channel == 1 ? c.g : t->channel == 2 ? c.b : c.a;
 }
+
+texel texture_sample(const world_texture *t, float u, float v) { return texture_sample_level(t, u, v, 0); }
+float texture_channel(const world_texture *t, float u, float v) { return texture_channel_level(t, u, v, 0); }

@@ -14,22 +14,22 @@ static void note_emission(world *w) {
     for (uint32_t i = 0; i < w->lights.count; i++) w->lights.varied |= w->lights.lights[i].varies != 0;
 }
 
-static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decoding, uint32_t threads,
-                  const char *embree_config, kiln_report *report) {
+static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decoding, kiln_texture_filter filter,
+                  uint32_t threads, const char *embree_config, kiln_report *report) {
     world_choose_space(w, scene);
-    if (!world_build_materials(w, scene, decoding, threads, report) || !world_build_geometry(w, scene, threads, report) ||
-        !world_build_lights(w, scene, decoding, threads, report))
+    if (!world_build_materials(w, scene, decoding, filter, threads, report) ||
+        !world_build_geometry(w, scene, threads, report) || !world_build_lights(w, scene, decoding, threads, report))
         return false;
     note_emission(w);
     return accel_create(w, threads, embree_config, report);
 }
 
-bool world_create(const kiln_scene *scene, const kiln_decoding *decoding, uint32_t threads, const char *embree_config,
-                  world **result, kiln_report *report) {
+bool world_create(const kiln_scene *scene, const kiln_decoding *decoding, kiln_texture_filter filter, uint32_t threads,
+                  const char *embree_config, world **result, kiln_report *report) {
     *result = NULL;
     world *w = calloc(1, sizeof *w);
     if (!w) return report_no_memory(report, "building the scene");
-    if (!build(w, scene, decoding, threads, embree_config, report)) {
+    if (!build(w, scene, decoding, filter, threads, embree_config, report)) {
         world_destroy(w);
         return false;
     }

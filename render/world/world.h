@@ -107,6 +107,7 @@ typedef struct world {
     uint32_t material_count;
     world_texture *textures;
     uint32_t texture_count;
+    bool filters; /* some texture has a pyramid: paths carry cones */
     float curves[KILN_TRANSFER_COUNT][256]; /* of 8-bit textures */
     struct world_image *images;             /* what the textures read */
     uint32_t image_count;
@@ -129,13 +130,14 @@ typedef struct world {
 } world;
 
 /* Reads scene, decoding (never NULL) and builds everything on `threads` threads. false: reported. */
-bool world_create(const kiln_scene *, const kiln_decoding *, uint32_t threads, const char *embree_config, world **,
-                  kiln_report *);
+bool world_create(const kiln_scene *, const kiln_decoding *, kiln_texture_filter, uint32_t threads,
+                  const char *embree_config, world **, kiln_report *);
 void world_destroy(world *);
 
 /* The parts, in the order in which world_create calls them. */
 void world_choose_space(world *, const kiln_scene *);
-bool world_build_materials(world *, const kiln_scene *, const kiln_decoding *, uint32_t threads, kiln_report *);
+bool world_build_materials(world *, const kiln_scene *, const kiln_decoding *, kiln_texture_filter, uint32_t threads,
+                           kiln_report *);
 /* Decodes what world_build_materials and world_build_lights would, and keeps nothing. */
 bool world_check_images(const kiln_scene *, uint32_t threads, kiln_report *);
 bool world_build_geometry(world *, const kiln_scene *, uint32_t threads, kiln_report *);

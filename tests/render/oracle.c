@@ -1,5 +1,6 @@
 #include "tests/render/oracle.h"
 
+#include "render/path/cone.h"
 #include "render/path/medium.h"
 #include "render/path/roulette.h"
 #include "render/path/shading.h"
@@ -13,6 +14,7 @@ typedef struct path {
     vec3 origin, direction, throughput, radiance;
     float pdf, squeeze, near, far;
     bool dispersed; /* it has a wavelength */
+    cone cone;
     uint64_t media;
     uint32_t depth;
 } path;
@@ -20,6 +22,9 @@ typedef struct path {
 typedef struct hit {
     uint32_t triangle, instance;
     surface_point p;
+    surface_triangle corners;
+    float across; /* of the cone */
+    int bumpy;    /* a normal map says something */
     const world_material *material;
     uint64_t beyond; /* media behind it */
 } hit;
@@ -49,6 +54,7 @@ static path start(const path_context *c, path_sample s) {
     float y = (float)s.y + 0.5f + pixel_filter_offset(&c->filter, pixel.y);
     camera_ray r = camera_ray_at(&c->camera, x * across - 1.0f, 1.0f - y * down, lens);
     p.origin = r.origin, p.direction = r.direction, p.near = r.near, p.far = r.far;
+    p.cone = cone_camera(&c->camera, 2.0f * c->camera.half_height / (float)c->height, p.direction);
     return p;
 }
 
@@ -116,6 +122,8 @@ static bool find(const path_context *c, path *p, hit *h) {
     surface_triangle tri = fetch(w, &met);
     h->triangle = met.triangle, h->instance = met.instance;
     h->p = surface_at(p->origin, p->direction, &tri);
+    h->corners = tri;
+    h->across = p->cone.width + p->cone.spread * h->p.hit.t;
     h->material = &w->materials[w->triangle_material[h->triangle]];
     if (!w->touches) h->beyond = medium_cross(p->media, h->material->medium, h->p.front > 0.5f);
     return true;
@@ -155,6 +163,17 @@ static vec2 uv_of(const world *w, const hit *h, uint32_t set) {
     return (vec2){b0 * a[0] + b1 * b[0] + b2 * d[0], b0 * a[1] + b1 * b[1] + b2 * d[1]};
 }
 
+static texture_footprint footprint_of(const world *w, const hit *h, uint32_t set) {
+    const surface_triangle *s = &h->corners;
+    vec2 uv[3] = {s->uv0, s->uv1, s->uv2};
+    for (size_t k = 0; set && k < 3; k++) {
+        const float *at = w->uvs[set] + 2 * (size_t)w->triangles[3 * (size_t)h->triangle + k];
+        uv[k] = (vec2){at[0], at[1]};
+    }
+    return cone_footprint(h->across, v3_sub(s->p1, s->p0), v3_sub(s->p2, s->p0),
+                          (vec2){uv[1].x - uv[0].x, uv[1].y - uv[0].y}, (vec2){uv[2].x - uv[0].x, uv[2].y - uv[0].y});
+}
+
 static void mix4(const world *w, const hit *h, const float *values, float out[4]) {
     const uint32_t *i = w->triangles + 3 * (size_t)h->triangle;
     float b1 = h->p.hit.u, b2 = h->p.hit.v, b0 = 1.0f - b1 - b2;
@@ -164,7 +183,8 @@ static void mix4(const world *w, const hit *h, const float *values, float out[4]
 }
 
 /* Material constants times textures; the mapped normal. */
-static surface look_up(const path_context *c, const hit *h, vec3 *emission, vec3 *normal) {
+static surface look_up(const path_context *c, hit *h, vec3 *emission, vec3 *normal) {
+    h->bumpy = 0;
     const world *w = c->world;
     const world_material *m = h->material;
     surface s = {v3_load(m->base), m->metallic, m->roughness, m->specular, v3_load(m->specular_color), m->f0,
@@ -180,8 +200,9 @@ static surface look_up(const path_context *c, const hit *h, vec3 *emission, vec3
         if (!m->texture[slot]) continue;
         const world_texture *t = &w->textures[m->texture[slot] - 1];
         vec2 uv = uv_of(w, h, t->uv_set);
-        texel x = texture_sample(t, uv.x, uv.y);
-        float one = texture_channel(t, uv.x, uv.y);
+        int32_t level = texture_level(t, footprint_of(w, h, t->uv_set));
+        texel x = texture_sample_level(t, uv.x, uv.y, level);
+        float one = texture_channel_level(t, uv.x, uv.y, level);
         vec3 rgb = {x.r, x.g, x.b};
         if (slot == SLOT_BASE) s.base = v3_mul(s.base, rgb);
         if (slot == SLOT_EMISSION) *emission = v3_mul(*emission, rgb);
@@ -198,6 +219,7 @@ static surface look_up(const path_context *c, const hit *h, vec3 *emission, vec3
         if (h->instance) direction = world_instance_vector(copy, direction);
         float sign = w->tangents[4 * (size_t)w->triangles[3 * (size_t)h->triangle] + 3] * copy->side;
         vec3 map = {(2.0f * x.r - 1.0f) * m->normal_scale, (2.0f * x.g - 1.0f) * m->normal_scale, 2.0f * x.b - 1.0f};
+        h->bumpy = map.x != 0.0f || map.y != 0.0f;
         *normal = surface_map(*normal, direction, sign, map, h->p.front);
     }
     return s;
@@ -279,6 +301,17 @@ static void connect(const path_context *c, path *p, const hit *h, const shading 
     if (visible == RAY_REACHES) p->radiance = v3_add(p->radiance, n.contribution);
 }
 
+/* The cone of the ray that p has become; it came along `came`. */
+static cone widen(const path *p, const hit *h, const shading *s, vec3 came, int crosses) {
+    const surface_triangle *t = &h->corners;
+    bool transmits = h->material->kind == KIND_TRANSMISSIVE, thin = transmits && s->bsdf.thin > 0.5f;
+    cone_bounce b = {.d = came, .n = s->frame.z, .wi = p->direction, .pdf = p->pdf, .eta = 1, .bumpy = h->bumpy,
+                     .bends = crosses & !thin, .passes = crosses & thin};
+    if (transmits) b.eta = s->bsdf.eta;
+    b.curvature = cone_curvature_of(v3_sub(t->p1, t->p0), v3_sub(t->p2, t->p0), t->n0, t->n1, t->n2, h->p.geometric);
+    return cone_scatter((cone){h->across, p->cone.spread}, &b);
+}
+
 /* The BSDF's direction and roulette; false: the path ends. */
 static bool scatter(const path_context *c, path *p, const hit *h, const shading *s, unsigned mask) {
     vec2 direction = draw(c, p, SAMPLE_BSDF), lobe = draw(c, p, SAMPLE_LOBE);
@@ -290,7 +323,9 @@ static bool scatter(const path_context *c, path *p, const hit *h, const shading 
     }
     roulette policy = roulette_make(c, p->depth);
     p->throughput = v3_scale(r.throughput, roulette_weight(&policy, r.throughput, p->squeeze, lobe.y));
+    vec3 came = p->direction;
     p->origin = r.origin, p->direction = r.direction, p->pdf = r.pdf;
+    p->cone = widen(p, h, s, came, mask & BSDF_TRANSMISSIVE && r.crosses);
     return v3_max(p->throughput) > 0.0f;
 }
 

@@ -54,13 +54,14 @@ static void check(const kiln_render_options *options) {
     add_everything(&b);
     must(kiln_scene_commit(b.scene, b.report), b.report, "committing");
     kiln_renderer *renderer;
-    must(kiln_renderer_create(b.scene, NULL, &renderer, b.report), b.report, "making a renderer");
+    must(kiln_renderer_create(b.scene, &(kiln_renderer_options){.texture_filter = KILN_TEXTURES_MIP}, &renderer, b.report), b.report, "making a renderer");
     kiln_film *film;
     must(kiln_film_create(&(kiln_film_desc){.width = SIDE, .height = SIDE}, &film, b.report), b.report, "making a film");
     kiln_render_options o = *options;
     kiln_camera view = everything_camera();
     o.camera = &view;
     path_context c;
+    assert_true(renderer->world->filters); /* cones are compared too */
     must(context_make(renderer, &o, film, &c, b.report), b.report, "making a context");
     const char *isas[] = {"v2", "v3", "v4"};
     for (int i = 0; i < 3; i++) compare(&c, isas[i]);
