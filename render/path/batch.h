@@ -38,14 +38,21 @@ enum {
 /* The cone of the path (cone.h): in scenes that filter textures, moved too. */
 #define PATH_CONE(X) X(float, width) X(float, spread)
 
-/* Where the ray has met a surface: moved with the path, once. */
+/* The same, where media scatter: how often they have. */
+#define PATH_EVENTS(X) X(uint32_t, events)
+
+/* Where the ray has met a surface: moved with the path, once. Where the medium in front of it has scattered the path, t is
+ * the distance to there, and u says so. */
+#define HIT_SCATTERED (-1.0f)
 #define PATH_HIT(X) X(float, t) X(float, u) X(float, v) X(uint32_t, triangle) X(uint32_t, instance)
 
 /* The same, where solids may touch: the stack of media behind the surface. */
 #define PATH_TOUCH(X) X(uint64_t, beyond)
 
 #define LANE_ARRAY(type, name) _Alignas(64) type name[LANES];
-typedef struct path_state { PATH_STATE(LANE_ARRAY) PATH_MEDIA(LANE_ARRAY) PATH_CONE(LANE_ARRAY) } path_state;
+typedef struct path_state {
+    PATH_STATE(LANE_ARRAY) PATH_MEDIA(LANE_ARRAY) PATH_CONE(LANE_ARRAY) PATH_EVENTS(LANE_ARRAY)
+} path_state;
 typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit;
 
 /* A triangle's corners, in render space. */
@@ -83,6 +90,7 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
     X(float, transmission) X(float, eta) X(float, thin)                                                                \
     X(float, hue_r) X(float, hue_g) X(float, hue_b) /* tints what passes: of the wavelength that the path takes on */  \
     X(uint64_t, beyond)                          /* stack of media behind the surface */                               \
+    X(float, g)                                  /* mean cosine of the medium's scattering */                          \
     X(uint32_t, crosses)                         /* the next ray lies on the far side */                               \
     X(float, emit_r) X(float, emit_g) X(float, emit_b)                                                                 \
     X(float, map_x) X(float, map_y) X(float, map_z) /* tangent-space normal */                                         \
@@ -152,6 +160,7 @@ typedef struct batch {
     struct path_parts *parts; /* NULL: nobody wants them */
     uint32_t current; /* of states and hits */
     uint32_t n;       /* lanes, a multiple of LANE_GROUP */
+    uint32_t surfaces; /* the first of them, after a sort: at surfaces; the rest scatter in a medium */
     uint32_t depth;   /* scattering events so far */
     lane_range kinds[KIND_COUNT];
     trace_counts camera_rays, bounce_rays, shadow_rays;

@@ -15,6 +15,7 @@ static void look_at_surfaces(const path_context *c, batch *b) {
     STAGE(material)(c, b);
     if (c->world->media_count > 1) STAGE(boundary)(c, b);
     STAGE(normal)(c, b);
+    if (c->world->scatters) STAGE(scattering)(c, b);
 }
 
 void STAGE(trace_samples)(const path_context *c, const path_sample *samples, uint32_t count, batch *b) {
@@ -24,6 +25,7 @@ void STAGE(trace_samples)(const path_context *c, const path_sample *samples, uin
     while (b->n > 0) {
         STAGE(trace)(c, b);
         if (w->touches) STAGE(touch)(c, b);
+        if (w->scatters) STAGE(flight)(c, b);
         STAGE(escape)(c, b);
         STAGE(sort)(c, b);
         look_at_surfaces(c, b);
@@ -31,8 +33,7 @@ void STAGE(trace_samples)(const path_context *c, const path_sample *samples, uin
         if ((c->aovs || c->handles) && b->depth == 0) STAGE(aovs)(c, b);
         if (w->emits) STAGE(emission)(c, b);
         if (w->emits && c->parts) STAGE(part_emission)(c, b);
-        if (b->depth >= c->max_depth) {
-            STAGE(limit)(c, b);
+        if (b->depth >= c->max_depth && STAGE(limit)(c, b)) {
             STAGE(sort)(c, b);
             look_at_surfaces(c, b);
         }

@@ -20,19 +20,27 @@
 enum { ROULETTE_AUTO_MIN = 1 };
 
 /* A policy at one depth: survival = constant + slope T + root √T. */
-typedef struct roulette { float constant, slope, root; } roulette;
+typedef struct roulette { float constant, slope, root, most; } roulette;
 
 static inline roulette roulette_make(const path_context *c, uint32_t depth) {
     bool beyond = depth >= c->max_depth; /* probes must end soon, whatever the policy */
     if (beyond || (c->roulette == KILN_ROULETTE_THROUGHPUT && depth >= c->roulette_min))
-        return (roulette){.slope = 1.0f};
-    if (c->roulette == KILN_ROULETTE_AUTO && depth >= ROULETTE_AUTO_MIN) return (roulette){.root = ROULETTE_ROOT};
-    return (roulette){.constant = c->roulette == KILN_ROULETTE_FIXED ? c->roulette_p : 1.0f};
+        return (roulette){.slope = 1.0f, .most = ROULETTE_MOST};
+    if (c->roulette == KILN_ROULETTE_AUTO && depth >= ROULETTE_AUTO_MIN) return (roulette){.root = ROULETTE_ROOT, .most = ROULETTE_MOST};
+    return (roulette){.constant = c->roulette == KILN_ROULETTE_FIXED ? c->roulette_p : 1.0f, .most = ROULETTE_MOST};
+}
+
+/* A medium that absorbs nothing is left sooner or later, and a hundredth off at each of a thousand events would leave
+ * few paths with much to carry: there the most is 1. */
+static inline roulette roulette_in_medium(const path_context *c, uint32_t depth) {
+    roulette r = roulette_make(c, depth);
+    r.most = 1.0f;
+    return r;
 }
 
 KERNEL float roulette_survival(const roulette *r, vec3 throughput, float squeeze) {
     float largest = fm_max(v3_max(throughput) * squeeze, 0.0f);
-    float survival = r->constant + fm_min(r->slope * largest + r->root * sqrtf(largest), ROULETTE_MOST);
+    float survival = r->constant + fm_min(r->slope * largest + r->root * sqrtf(largest), r->most);
     return survival > 0.0f ? survival : 1.0f; /* a dead path needs no roulette */
 }
 

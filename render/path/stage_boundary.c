@@ -43,7 +43,7 @@ void STAGE(boundary)(const path_context *c, batch *b) {
     const path_state *s = batch_state(b);
     const path_hit *h = batch_hit(b);
     path_scratch *x = &b->scratch;
-    for (uint32_t i = 0; i < b->n; i++) {
+    for (uint32_t i = 0; i < b->surfaces; i++) {
         const world_material *m = &w->materials[x->material[i]];
         uint64_t media = s->media[i];
         x->beyond[i] = w->touches ? h->beyond[i] : medium_cross(media, m->medium, x->front[i] > 0.5f);

@@ -18,7 +18,7 @@ void STAGE(cone_hit)(const path_context *c, batch *b) {
     const path_state *s = batch_state(b);
     const path_hit *h = batch_hit(b);
     path_scratch *x = &b->scratch;
-    LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
+    LANE_LOOP (uint32_t i = 0; i < b->surfaces; i++) {
         vec3 p0 = {x->p0x[i], x->p0y[i], x->p0z[i]};
         vec3 e1 = v3_sub(v3(x->p1x[i], x->p1y[i], x->p1z[i]), p0), e2 = v3_sub(v3(x->p2x[i], x->p2y[i], x->p2z[i]), p0);
         cone_curvature k = cone_curvature_of(e1, e2, v3(x->n0x[i], x->n0y[i], x->n0z[i]),
@@ -62,4 +62,6 @@ void STAGE(cone_scatter)(const path_context *c, batch *b) {
     bounce(0, mapped, b, b->kinds[KIND_DIFFUSE]);
     bounce(0, mapped, b, b->kinds[KIND_GLOSSY]);
     bounce(1, mapped, b, b->kinds[KIND_TRANSMISSIVE]);
+    path_state *s = batch_state(b); /* what a medium has scattered may come to a focus anywhere */
+    for (uint32_t i = b->surfaces; i < b->n; i++) s->width[i] = s->spread[i] = 0.0f;
 }

@@ -1,3 +1,4 @@
+#include "render/path/flight.h"
 #include "render/path/lanes.h"
 #include "render/path/medium.h"
 #include "render/path/stages.h"
@@ -22,6 +23,29 @@ KERNEL void weigh(unsigned mask, const path_context *c, batch *b, lane_range lan
     }
 }
 
+/* The same at points in a medium. */
+static void weigh_scattering(const path_context *c, batch *b) {
+    const path_state *s = batch_state(b);
+    path_scratch *x = &b->scratch;
+    kiln_estimator estimator = c->estimator;
+    uint32_t first = b->kinds[KIND_MEDIUM].first, end = b->kinds[KIND_MEDIUM].end;
+    LANE_LOOP (uint32_t i = first; i < end; i++) {
+        light_sampled l = {.wi = {x->wx[i], x->wy[i], x->wz[i]},
+                           .radiance = {x->cr[i], x->cg[i], x->cb[i]},
+                           .parallel = x->parallel[i] > 0.5f};
+        vec3 throughput = {s->tr[i], s->tg[i], s->tb[i]}, p = {x->px[i], x->py[i], x->pz[i]};
+        vec3 r = flight_connect(v3(-s->dx[i], -s->dy[i], -s->dz[i]), x->g[i], estimator, throughput, &l, x->light_pdf[i]);
+        vec3 to = v3_sub(v3(x->tx[i], x->ty[i], x->tz[i]), p);
+        int placed = x->distance[i] < INFINITY;
+        float length = sqrtf(v3_dot(to, to));
+        vec3 way = v3_select(placed, v3_scale(to, 1.0f / fm_max(length, 1e-30f)), l.wi);
+        x->cr[i] = r.x, x->cg[i] = r.y, x->cb[i] = r.z;
+        x->sox[i] = p.x, x->soy[i] = p.y, x->soz[i] = p.z;
+        x->sdx[i] = way.x, x->sdy[i] = way.y, x->sdz[i] = way.z;
+        x->tfar[i] = placed ? length : INFINITY;
+    }
+}
+
 /* The medium between the point and the light, on whichever side of the surface that is. */
 static void attenuate(const path_context *c, batch *b) {
     const path_state *s = batch_state(b);
@@ -38,6 +62,7 @@ void STAGE(connect)(const path_context *c, batch *b) {
     weigh(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
     weigh(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
     weigh(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
+    if (c->world->scatters) weigh_scattering(c, b);
     if (c->world->absorbs) attenuate(c, b);
 
     path_state *s = batch_state(b);

@@ -7,7 +7,7 @@ static void find_lights(const path_context *c, batch *b) {
     const world *w = c->world;
     const path_hit *h = batch_hit(b);
     path_scratch *x = &b->scratch;
-    for (uint32_t i = 0; i < b->n; i++) {
+    for (uint32_t i = 0; i < b->surfaces; i++) {
         uint32_t number = w->triangle_light ? w->triangle_light[h->triangle[i]] : LIGHT_NONE;
         uint32_t which = w->instances[h->instance[i]].light_base + number;
         bool known = number != LIGHT_NONE && c->light_cdf;
@@ -24,7 +24,7 @@ void STAGE(emission)(const path_context *c, batch *b) {
     const path_hit *h = batch_hit(b);
     const path_scratch *x = &b->scratch;
     kiln_estimator estimator = c->estimator;
-    LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
+    LANE_LOOP (uint32_t i = 0; i < b->surfaces; i++) {
         vec3 n = {x->gx[i], x->gy[i], x->gz[i]}, d = {s->dx[i], s->dy[i], s->dz[i]};
         float light_pdf = x->light_pdf[i] * light_triangle_pdf(h->t[i], v3_dot(n, d), x->area[i]);
         float weight = estimate_hit_weight(estimator, s->pdf[i], light_pdf);

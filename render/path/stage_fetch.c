@@ -24,8 +24,8 @@ void STAGE(fetch)(const path_context *c, batch *b) {
     const world *w = c->world;
     const path_hit *h = batch_hit(b);
     path_scratch *x = &b->scratch;
-    for (uint32_t i = 0; i < b->n; i++) {
-        prefetch(w, h, i, b->n);
+    for (uint32_t i = 0; i < b->surfaces; i++) {
+        prefetch(w, h, i, b->surfaces);
         const uint32_t *v = w->triangles + 3 * (size_t)h->triangle[i];
         const world_vertex *a = &w->vertices[v[0]], *p = &w->vertices[v[1]], *q = &w->vertices[v[2]];
         x->p0x[i] = a->p[0], x->p0y[i] = a->p[1], x->p0z[i] = a->p[2];

@@ -1,3 +1,4 @@
+#include "render/path/flight.h"
 #include "render/path/stages.h"
 
 /* A probe hands over what it has found so far; from here on its radiance is what the limit cuts off. */
@@ -8,12 +9,26 @@ static void start_probe(batch *b, uint32_t i) {
     s->lr[i] = s->lg[i] = s->lb[i] = 0.0f;
 }
 
-void STAGE(limit)(const path_context *c, batch *b) {
+/* How far past the limit a path is: bounces off surfaces, or events in media, of which there may be more. */
+static int32_t excess(const path_context *c, const batch *b, uint32_t i) {
+    if (!c->world->scatters) return (int32_t)(b->depth - c->max_depth);
+    const path_state *s = &b->states[b->current];
+    int32_t events = (int32_t)s->events[i] - MEDIUM_EVENTS_MAX;
+    int32_t bounces = i < b->surfaces ? (int32_t)(b->depth - s->events[i]) - (int32_t)c->max_depth : -1;
+    return bounces > events ? bounces : events;
+}
+
+bool STAGE(limit)(const path_context *c, batch *b) {
     path_state *s = batch_state(b);
-    bool probes_end = b->depth >= c->max_depth + PROBE_DEPTHS;
+    bool ended = false;
     for (uint32_t i = 0; i < b->n; i++) {
-        bool probe = !probes_end && path_is_probe(s->seed[i], s->index[i]) && slot_index(s->slot[i]) != SLOT_NOWHERE;
+        int32_t past = excess(c, b, i);
+        if (past < 0) continue;
+        bool probe = past < PROBE_DEPTHS && path_is_probe(s->seed[i], s->index[i]) &&
+                     slot_index(s->slot[i]) != SLOT_NOWHERE;
+        ended |= !probe;
         if (!probe) s->tr[i] = s->tg[i] = s->tb[i] = 0.0f;
         else if (!(s->slot[i] & SLOT_BEYOND)) start_probe(b, i);
     }
+    return ended;
 }

@@ -110,12 +110,12 @@ void STAGE(material)(const path_context *c, batch *b) {
     const world *w = c->world;
     const path_hit *h = batch_hit(b);
     path_scratch *x = &b->scratch;
-    for (uint32_t i = 0; i < b->n; i++) load_diffuse(w, x, i);
+    for (uint32_t i = 0; i < b->surfaces; i++) load_diffuse(w, x, i);
     for (uint32_t i = b->kinds[KIND_GLOSSY].first; i < b->kinds[KIND_TRANSMISSIVE].end; i++) load_glossy(w, x, i);
     for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_TRANSMISSIVE].end; i++)
         load_transmissive(w, x, i);
-    if (w->colors) tint_by_vertices(w, h, x, b->n);
-    if (w->slots & 1u << SLOT_NORMAL) for (uint32_t i = 0; i < b->n; i++) x->map_x[i] = x->map_y[i] = 0.0f;
+    if (w->colors) tint_by_vertices(w, h, x, b->surfaces);
+    if (w->slots & 1u << SLOT_NORMAL) for (uint32_t i = 0; i < b->surfaces; i++) x->map_x[i] = x->map_y[i] = 0.0f;
     for (int slot = 0; slot < SLOT_COUNT; slot++)
-        if (w->slots & 1u << slot) apply_slot(w, h, x, b->n, (material_slot)slot);
+        if (w->slots & 1u << slot) apply_slot(w, h, x, b->surfaces, (material_slot)slot);
 }

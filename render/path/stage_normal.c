@@ -12,8 +12,8 @@ static void apply_maps(path_scratch *x, uint32_t n) {
 void STAGE(normal)(const path_context *c, batch *b) {
     const path_state *s = batch_state(b);
     path_scratch *x = &b->scratch;
-    if (c->world->slots & 1u << SLOT_NORMAL) apply_maps(x, b->n);
-    LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
+    if (c->world->slots & 1u << SLOT_NORMAL) apply_maps(x, b->surfaces);
+    LANE_LOOP (uint32_t i = 0; i < b->surfaces; i++) {
         vec3 wo = {-s->dx[i], -s->dy[i], -s->dz[i]};
         vec3 n = surface_face(v3(x->nx[i], x->ny[i], x->nz[i]), wo);
         x->nx[i] = n.x, x->ny[i] = n.y, x->nz[i] = n.z;

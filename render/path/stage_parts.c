@@ -22,7 +22,7 @@ void STAGE(part_found)(const path_context *c, batch *b, uint32_t i, uint8_t grou
 }
 
 void STAGE(part_emission)(const path_context *c, batch *b) {
-    for (uint32_t i = 0; i < b->n; i++) STAGE(part_found)(c, b, i, c->parts->of_material[b->scratch.material[i]]);
+    for (uint32_t i = 0; i < b->surfaces; i++) STAGE(part_found)(c, b, i, c->parts->of_material[b->scratch.material[i]]);
 }
 
 static uint8_t part_of_light(const path_context *c, const path_scratch *x, uint32_t i) {
@@ -37,6 +37,9 @@ static uint8_t part_of_light(const path_context *c, const path_scratch *x, uint3
     }
     return plan->of_environment;
 }
+
+/* What a medium scatters has come through. */
+static const bsdf_parts scattered = {.of[KILN_LOBE_TRANSMISSION] = {1, 1, 1}};
 
 KERNEL void record_first(unsigned mask, const path_context *c, batch *b, lane_range lanes) {
     const path_state *s = batch_state(b);
@@ -57,6 +60,10 @@ void STAGE(part_light)(const path_context *c, batch *b) {
         record_first(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
         record_first(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
         record_first(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
+        for (uint32_t i = b->surfaces; i < b->n; i++)
+            if (counts(s, i) && x->visible[i] == RAY_REACHES)
+                parts_record(c->parts, b->parts, slot_index(s->slot[i]), radiance_of(s, i), BOUNCE_DIRECT,
+                             part_of_light(c, x, i), &scattered);
         return;
     }
     for (uint32_t i = 0; i < b->n; i++)
@@ -82,4 +89,7 @@ void STAGE(part_scatter)(const path_context *c, batch *b) {
     share_first(SHADING_MASK_DIFFUSE, b, b->kinds[KIND_DIFFUSE]);
     share_first(SHADING_MASK_GLOSSY, b, b->kinds[KIND_GLOSSY]);
     share_first(SHADING_MASK_TRANSMISSIVE, b, b->kinds[KIND_TRANSMISSIVE]);
+    const path_state *s = batch_state(b);
+    for (uint32_t i = b->surfaces; i < b->n; i++)
+        if (counts(s, i)) *shares_of(b, s, i) = scattered;
 }

@@ -1,3 +1,4 @@
+#include "render/path/flight.h"
 #include "render/path/lanes.h"
 #include "render/path/medium.h"
 #include "render/path/roulette.h"
@@ -37,9 +38,28 @@ static void cross_media(const world *w, batch *b) {
         if (w->media[medium_top(s->media[i])].spread > 0.0f) s->slot[i] |= SLOT_DISPERSED;
 }
 
+/* At points in a medium: the phase function. */
+static void scatter_in_media(const path_context *c, batch *b) {
+    path_state *s = batch_state(b);
+    const path_scratch *x = &b->scratch;
+    roulette policy = roulette_in_medium(c, b->depth);
+    uint32_t first = b->kinds[KIND_MEDIUM].first, end = b->kinds[KIND_MEDIUM].end;
+    LANE_LOOP (uint32_t i = first; i < end; i++) {
+        vec3 wo = {-s->dx[i], -s->dy[i], -s->dz[i]}, throughput = {s->tr[i], s->tg[i], s->tb[i]};
+        vec3 wi = phase_sample(wo, x->g[i], (vec2){x->u_bsdf_x[i], x->u_bsdf_y[i]});
+        float kept = roulette_weight(&policy, throughput, s->squeeze[i], x->u_roulette[i]);
+        s->ox[i] = x->px[i], s->oy[i] = x->py[i], s->oz[i] = x->pz[i];
+        s->dx[i] = wi.x, s->dy[i] = wi.y, s->dz[i] = wi.z;
+        s->tr[i] = throughput.x * kept, s->tg[i] = throughput.y * kept, s->tb[i] = throughput.z * kept;
+        s->pdf[i] = phase_value(wo, wi, x->g[i]);
+        s->events[i]++;
+    }
+}
+
 void STAGE(scatter)(const path_context *c, batch *b) {
     scatter(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
     scatter(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
     scatter(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
+    if (c->world->scatters) scatter_in_media(c, b);
     if (c->world->media_count > 1) cross_media(c->world, b);
 }

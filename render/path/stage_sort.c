@@ -22,6 +22,9 @@ static void move(const world *w, batch *b, uint32_t count, bool with_hits) {
     if (w->filters) {
         PATH_CONE(MOVE_STATE)
     }
+    if (w->scatters) {
+        PATH_EVENTS(MOVE_STATE)
+    }
     if (with_hits) {
         PATH_HIT(MOVE_HIT)
     }
@@ -50,6 +53,7 @@ void STAGE(sort)(const path_context *c, batch *b) {
     for (uint32_t i = 0; i < b->n; i++) {
         bool goes_on = h->triangle[i] < TRIANGLE_REFUSED && is_alive(s, i);
         kind[i] = goes_on ? w->materials[w->triangle_material[h->triangle[i]]].kind : KIND_COUNT;
+        if (goes_on && h->u[i] == HIT_SCATTERED) kind[i] = KIND_MEDIUM;
         if (goes_on) continue;
         batch_flush(b, i);
         if (h->triangle[i] == TRIANGLE_REFUSED) b->out.refused[slot_index(s->slot[i])] = 1;
@@ -60,6 +64,7 @@ void STAGE(sort)(const path_context *c, batch *b) {
             if (kind[i] == k) order[count++] = i;
         b->kinds[k].end = count = fill_group(order, count);
     }
+    b->surfaces = b->kinds[KIND_TRANSMISSIVE].end;
     move(w, b, count, true);
 }
 

@@ -6,7 +6,7 @@ void STAGE(surface)(const path_context *c, batch *b) {
     const path_state *s = batch_state(b);
     path_hit *h = batch_hit(b);
     path_scratch *x = &b->scratch;
-    LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
+    LANE_LOOP (uint32_t i = 0; i < b->surfaces; i++) {
         surface_triangle t = {.p0 = {x->p0x[i], x->p0y[i], x->p0z[i]},
                               .p1 = {x->p1x[i], x->p1y[i], x->p1z[i]},
                               .p2 = {x->p2x[i], x->p2y[i], x->p2z[i]},

@@ -22,6 +22,10 @@ void STAGE(camera)(const path_context *, const path_sample *samples, uint32_t co
 void STAGE(trace)(const path_context *, batch *);
 /* Surfaces of solids that coincide become one. */
 void STAGE(touch)(const path_context *, batch *);
+/* Media that scatter do so somewhere along the ray, or let it reach the surface. */
+void STAGE(flight)(const path_context *, batch *);
+/* The points at which they do. */
+void STAGE(scattering)(const path_context *, batch *);
 /* Paths that left the scene collect what shines from all around, and end. */
 void STAGE(escape)(const path_context *, batch *);
 /* The paths that hit something close up, in ranges of one material kind each. */
@@ -46,8 +50,8 @@ void STAGE(normal)(const path_context *, batch *);
 void STAGE(aovs)(const path_context *, batch *);
 /* Light that the surface itself gives off, weighted as the estimator says. */
 void STAGE(emission)(const path_context *, batch *);
-/* At the depth limit paths end; a few go on to measure what is cut. */
-void STAGE(limit)(const path_context *, batch *);
+/* At the depth limit paths end; a few go on to measure what is cut. Did some end? */
+bool STAGE(limit)(const path_context *, batch *);
 /* The bounce's random numbers. */
 void STAGE(random)(const path_context *, batch *);
 /* A light for each path, and a point on it. */

@@ -52,16 +52,11 @@ static inline uint64_t touch_beyond(const touch *t, uint64_t media) {
 /* How far along a ray surfaces count as one with this: as far as a ray that leaves it starts off it. A ray that grazes
  * it more than 1 : 20 would take all that it meets along the way for one. */
 static inline float touch_distance(const world *w, vec3 direction, uint32_t triangle, uint32_t instance) {
-    const uint32_t *v = w->triangles + 3 * (size_t)triangle;
-    const world_instance *copy = &w->instances[instance];
     vec3 p[3];
-    for (int k = 0; k < 3; k++) {
-        p[k] = v3_load(w->vertices[v[k]].p);
-        if (instance) p[k] = world_instance_point(copy, p[k]);
-    }
+    lookup_corners(w, triangle, instance, p);
     vec3 e1 = v3_sub(p[1], p[0]), e2 = v3_sub(p[2], p[0]), n = v3_cross(e1, e2);
     n = v3_scale(n, 1.0f / fm_max(v3_length(n), 1e-37f)); /* Embree reports no hit on a triangle without area */
-    return surface_reach(n, p[0], e1, e2, copy->magnitude) / fm_max(fabsf(v3_dot(n, direction)), 0.05f);
+    return surface_reach(n, p[0], e1, e2, w->instances[instance].magnitude) / fm_max(fabsf(v3_dot(n, direction)), 0.05f);
 }
 
 #endif

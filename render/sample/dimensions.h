@@ -17,7 +17,8 @@
     X(BSDF, 2, "direction of a lobe")                                                                                  \
     X(LOBE, 2, "which lobe; whether the path goes on")                                                                 \
     X(COVERAGE, 1, "whether a surface of partial coverage is hit")                                                     \
-    X(WAVELENGTH, 1, "wavelength of a path that meets dispersion")
+    X(WAVELENGTH, 1, "wavelength of a path that meets dispersion")                                                     \
+    X(FLIGHT, 2, "how far a path goes in a medium that scatters; for which channel")
 
 typedef enum sample_purpose {
 #define SAMPLE_PURPOSE_ENUM(id, numbers, text) SAMPLE_##id,

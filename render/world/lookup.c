@@ -8,6 +8,14 @@ vec2 lookup_uv(const world *w, uint32_t triangle, uint32_t uv_set, vec2 at) {
     return (vec2){b0 * uv[0][0] + at.x * uv[1][0] + at.y * uv[2][0], b0 * uv[0][1] + at.x * uv[1][1] + at.y * uv[2][1]};
 }
 
+void lookup_corners(const world *w, uint32_t triangle, uint32_t instance, vec3 corners[3]) {
+    const uint32_t *v = w->triangles + 3 * (size_t)triangle;
+    for (int k = 0; k < 3; k++) {
+        corners[k] = v3_load(w->vertices[v[k]].p);
+        if (instance) corners[k] = world_instance_point(&w->instances[instance], corners[k]);
+    }
+}
+
 vec3 lookup_facing(const world *w, uint32_t triangle, uint32_t instance) {
     const uint32_t *v = w->triangles + 3 * (size_t)triangle;
     vec3 p0 = v3_load(w->vertices[v[0]].p);

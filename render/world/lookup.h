@@ -7,6 +7,9 @@
 
 vec2 lookup_uv(const world *, uint32_t triangle, uint32_t uv_set, vec2 at);
 
+/* A triangle's corners in render space. */
+void lookup_corners(const world *, uint32_t triangle, uint32_t instance, vec3 corners[3]);
+
 /* Where a triangle's copy faces, in render space, of any length. */
 vec3 lookup_facing(const world *, uint32_t triangle, uint32_t instance);
 

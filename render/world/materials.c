@@ -200,7 +200,9 @@ static bool build(builder *b, const bool *used, uint32_t threads) {
     }
     memcpy(w->uv_sets, b->uv_sets, sizeof w->uv_sets);
     w->uv_set_count = b->uv_set_count;
-    return world_build_media(w, b->scene, b->decoding, used, b->report);
+    if (!world_build_media(w, b->scene, b->decoding, used, b->report)) return false;
+    if (w->scatters) w->kinds |= 1u << KIND_MEDIUM;
+    return true;
 }
 
 bool world_build_materials(world *w, const kiln_scene *scene, const kiln_decoding *decoding,

@@ -86,6 +86,17 @@ static vec3 extinction_of(const world *w, const kiln_decoding *decoding, const k
               -logf(fminf(fmaxf(left.z, least), 1.0f)) * per_unit);
 }
 
+/* Single-scattering from multiple-scattering albedo: Kulla and Conty 2017, as KHR_materials_volume_scatter has it. */
+static float single_albedo(float multiple) {
+    double m = fmin(fmax((double)multiple, 0), 1);
+    double root = 4.09712 + 4.20863 * m - sqrt(9.59217 + 41.6808 * m + 17.7126 * m * m);
+    return (float)fmin(fmax(1 - root * root, 0), 1);
+}
+static vec3 albedo_of(const kiln_decoding *decoding, const kiln_material *m) {
+    vec3 c = decoding_apply(decoding, KILN_TRANSFER_LINEAR, m->multiscatter_color);
+    return v3(single_albedo(c.x), single_albedo(c.y), single_albedo(c.z));
+}
+
 static void set_medium(world *w, const kiln_decoding *decoding, const kiln_material *from, uint32_t number) {
     world_medium *m = &w->media[number];
     vec3 sigma = extinction_of(w, decoding, from);
@@ -94,6 +105,12 @@ static void set_medium(world *w, const kiln_decoding *decoding, const kiln_mater
     if (disperses) m->spread = fminf((m->ior - 1.0f) * from->dispersion / 20.0f, WORLD_IOR_MAX);
     v3_store(w->extinction + 3 * (size_t)number, sigma);
     w->absorbs |= v3_max(sigma) > 0;
+    vec3 albedo = from->layers & KILN_LAYER_VOLUME_SCATTER ? albedo_of(decoding, from) : v3_splat(0);
+    m->scatters = v3_max(albedo) > 0 && v3_max(sigma) > 0;
+    m->g = from->scatter_anisotropy;
+    w->scatters |= m->scatters;
+    v3_store(w->albedo + 3 * (size_t)number, albedo);
+    v3_store(w->absorption + 3 * (size_t)number, m->scatters ? v3_splat(0) : sigma);
 }
 
 /* A box of a copy with a solid material, in the scene's space. */
@@ -158,6 +175,28 @@ static bool set_spectrum(world *w, const kiln_decoding *decoding) {
     return w->spectrum != NULL;
 }
 
+static void warn_if_open(const kiln_scene *scene, const kiln_mesh *m, kiln_id material, kiln_report *report) {
+    size_t edges;
+    if (!mesh_is_open(m, material, &edges)) return;
+    kiln_where where = where_root(m->name);
+    report_warning(report, KILN_CODE_GEOMETRY, &where,
+                   "close the mesh and turn its faces outward, or give the material a thickness of 0",
+                   "the material '%s' bounds a volume, but the mesh is open at %zu edges: where light goes in and never "
+                   "out, or out and never in, the volume is guessed",
+                   scene_material(scene, material)->name, edges);
+}
+
+/* Solids must be closed; for each mesh and solid material of it. */
+static void check_closed(const world *w, const kiln_scene *scene, const double *scales, const candidate *list, int n,
+                         kiln_report *report) {
+    for (uint32_t i = 0; i < scene->mesh_count; i++) {
+        const kiln_mesh *m = &scene->meshes[i];
+        if (!(scales[i] > 0)) continue;
+        if (!m->face_materials && w->materials[m->material].medium) warn_if_open(scene, m, m->material, report);
+        for (int k = 0; m->face_materials && k < n; k++) warn_if_open(scene, m, list[k].material, report);
+    }
+}
+
 /* What building needs for a while. */
 typedef struct scratch {
     candidate *list;
@@ -180,13 +219,16 @@ static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decodi
     qsort(list, (size_t)n, sizeof *list, by_rank);
     w->media = ARENA_ARRAY(&w->arena, world_medium, (size_t)n + 1);
     w->extinction = ARENA_ARRAY(&w->arena, float, 3 * ((size_t)n + 1));
-    if (!w->media || !w->extinction) return report_no_memory(report, "building media");
+    w->absorption = ARENA_ARRAY(&w->arena, float, 3 * ((size_t)n + 1));
+    w->albedo = ARENA_ARRAY(&w->arena, float, 3 * ((size_t)n + 1));
+    if (!w->media || !w->extinction || !w->absorption || !w->albedo) return report_no_memory(report, "building media");
     w->media[0].ior = 1;
     w->media_count = (uint32_t)n + 1;
     for (int i = 0; i < n; i++) {
         w->materials[list[i].material].medium = (uint32_t)i + 1;
         set_medium(w, decoding, scene_material(scene, list[i].material), (uint32_t)i + 1);
     }
+    check_closed(w, scene, s->scales, list, n, report);
     w->touches = n > 0 && some_touch(w, scene);
     return set_spectrum(w, decoding) || report_no_memory(report, "building media");
 }

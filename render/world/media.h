@@ -11,4 +11,7 @@ bool material_is_solid(const kiln_material *);
  * kiln_id. The materials' records exist. false: reported. */
 bool world_build_media(world *, const kiln_scene *, const kiln_decoding *, const bool *used, kiln_report *);
 
+/* Do the mesh's faces of a material leave holes? edges: how many of their sides have no counterpart. */
+bool mesh_is_open(const kiln_mesh *, kiln_id material, size_t *edges);
+
 #endif

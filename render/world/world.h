@@ -58,7 +58,8 @@ enum {
 };
 
 /* What the shading of a material can need: the kernels' instances. */
-typedef enum material_kind { KIND_DIFFUSE, KIND_GLOSSY, KIND_TRANSMISSIVE, KIND_COUNT } material_kind;
+typedef enum material_kind { KIND_DIFFUSE, KIND_GLOSSY, KIND_TRANSMISSIVE,
+               KIND_MEDIUM, /* of points in media that scatter: no material */ KIND_COUNT } material_kind;
 
 typedef struct world_material {
     float base[3], opacity, metallic, roughness, normal_scale;
@@ -76,6 +77,8 @@ typedef struct world_material {
 
 /* What fills a solid, beside what it takes away (world.extinction). */
 typedef struct world_medium {
+    bool scatters;
+    float g;      /* mean cosine of scattering */
     float ior;    /* at 587.6 nm */
     float spread; /* (ior − 1)/V, V the Abbe number; 0: the index is that at all wavelengths */
 } world_medium;
@@ -120,7 +123,10 @@ typedef struct world {
     world_medium *media; /* [0] is air; the higher number is there where media overlap */
     uint32_t media_count;
     float *extinction;   /* of each, 3, per length in render space */
-    bool absorbs;        /* one of them is not 0 */
+    float *absorption;   /* the same of those that do not scatter, 0 of those that do */
+    float *albedo;       /* of each, 3: what part of the extinction is scattering */
+    bool absorbs;        /* some extinction is not 0 */
+    bool scatters;       /* some medium does */
     bool touches;        /* solids may touch or overlap */
     float *spectrum;     /* spectrum.h; NULL: no medium disperses */
 

@@ -40,6 +40,9 @@ static kiln_id glass(scene_builder *b, float roughness, float thickness, float i
     kiln_material m = kiln_material_default();
     m.layers = KILN_LAYER_TRANSMISSION | KILN_LAYER_VOLUME | KILN_LAYER_DISPERSION;
     m.dispersion = roughness;
+    if (roughness > 0) m.layers |= KILN_LAYER_VOLUME_SCATTER;
+    m.multiscatter_color[0] = 0.9f, m.multiscatter_color[1] = 0.6f;
+    m.scatter_anisotropy = 0.4f;
     m.metallic.value = 0;
     m.roughness.value = roughness;
     m.transmission.value = 0.9f;

@@ -1,6 +1,7 @@
 #include "tests/render/oracle.h"
 
 #include "render/path/cone.h"
+#include "render/path/flight.h"
 #include "render/path/medium.h"
 #include "render/path/roulette.h"
 #include "render/path/shading.h"
@@ -16,7 +17,7 @@ typedef struct path {
     bool dispersed; /* it has a wavelength */
     cone cone;
     uint64_t media;
-    uint32_t depth;
+    uint32_t depth, events; /* bounces; those of them that were in a medium */
 } path;
 
 typedef struct hit {
@@ -27,6 +28,7 @@ typedef struct hit {
     int bumpy;    /* a normal map says something */
     const world_material *material;
     uint64_t beyond; /* media behind it */
+    ray_crossing met;
 } hit;
 
 static vec2 draw(const path_context *c, const path *p, sample_purpose purpose) {
@@ -120,6 +122,7 @@ static bool find(const path_context *c, path *p, hit *h) {
     } while (p->depth == 0 && is_culled(w, p, &met));
     h->beyond = merge(c, p, &met);
     surface_triangle tri = fetch(w, &met);
+    h->met = met;
     h->triangle = met.triangle, h->instance = met.instance;
     h->p = surface_at(p->origin, p->direction, &tri);
     h->corners = tri;
@@ -274,31 +277,79 @@ static unsigned mask_of(material_kind kind) {
     return kind == KIND_DIFFUSE ? SHADING_MASK_DIFFUSE : kind == KIND_GLOSSY ? SHADING_MASK_GLOSSY : SHADING_MASK_TRANSMISSIVE;
 }
 
-/* Next-event estimation. */
-static void connect(const path_context *c, path *p, const hit *h, const shading *s, unsigned mask) {
-    const world *w = c->world;
-    const light_table *t = &w->lights;
+/* A light, a point on it, and the density of both. */
+static light_sampled draw_light(const path_context *c, const path *p, vec3 position, float *density) {
+    const light_table *t = &c->world->lights;
     vec2 place = draw(c, p, SAMPLE_LIGHT);
     float rest, fine = draw(c, p, SAMPLE_LIGHT_FINE).x;
     uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, place.x, fine, &rest);
     light l = t->lights[k];
     place.x = rest;
     if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, place, fine, &l);
-    light_sampled r = light_sample(KIND(LIGHT_KINDS) - 1, &l, s->position, place);
-    if (l.varies) r.radiance = v3_mul(r.radiance, lookup_emission(w, l.varies - 1, warp_triangle(place)));
-    float density = r.pdf * distribution_probability(c->light_cdf, k);
-    shading_connection n = shading_connect(mask, s, c->estimator, p->throughput, &r, density);
-    if (w->absorbs) {
-        uint32_t medium = medium_top(v3_dot(r.wi, s->geometric) < 0.0f ? h->beyond : p->media);
-        n.contribution = v3_mul(n.contribution, medium_transmittance(w->extinction, medium, r.distance));
-    }
-    if (!(v3_max(n.contribution) > 0.0f)) return;
+    light_sampled r = light_sample(KIND(LIGHT_KINDS) - 1, &l, position, place);
+    if (l.varies) r.radiance = v3_mul(r.radiance, lookup_emission(c->world, l.varies - 1, warp_triangle(place)));
+    *density = r.pdf * distribution_probability(c->light_cdf, k);
+    return r;
+}
+
+/* Adds what comes through the medium, if nothing is in the way. */
+static void reach(const path_context *c, path *p, const shading_connection *n, uint32_t medium, float distance) {
+    const world *w = c->world;
+    vec3 sum = n->contribution;
+    if (w->absorbs) sum = v3_mul(sum, medium_transmittance(w->extinction, medium, distance));
+    if (!(v3_max(sum) > 0.0f)) return;
     uint32_t visible = RAY_STOPPED;
     trace_counts counts = {0};
-    ray_lanes ray = {&n.origin.x, &n.origin.y, &n.origin.z, &n.direction.x, &n.direction.y, &n.direction.z,
-                     NULL, &n.far, coverage_of(c, p, SAMPLE_LIGHT_FINE), NULL, 1};
+    ray_lanes ray = {&n->origin.x, &n->origin.y, &n->origin.z, &n->direction.x, &n->direction.y, &n->direction.z,
+                     NULL, &n->far, coverage_of(c, p, SAMPLE_LIGHT_FINE), NULL, 1};
     accel_visible(w, &ray, &visible, &counts);
-    if (visible == RAY_REACHES) p->radiance = v3_add(p->radiance, n.contribution);
+    if (visible == RAY_REACHES) p->radiance = v3_add(p->radiance, sum);
+}
+
+/* Next-event estimation. */
+static void connect(const path_context *c, path *p, const hit *h, const shading *s, unsigned mask) {
+    float density;
+    light_sampled r = draw_light(c, p, s->position, &density);
+    shading_connection n = shading_connect(mask, s, c->estimator, p->throughput, &r, density);
+    reach(c, p, &n, medium_top(v3_dot(r.wi, s->geometric) < 0.0f ? h->beyond : p->media), r.distance);
+}
+
+/* Does the medium scatter before the surface? Then at *distance. */
+static bool fly(const path_context *c, path *p, const hit *h, float *distance) {
+    const world *w = c->world;
+    uint32_t medium = medium_top(p->media);
+    if (!w->media[medium].scatters) return false;
+    vec2 u = draw(c, p, SAMPLE_FLIGHT);
+    float limit = flight_limit(w, p->origin, p->direction, &h->met);
+    flight f = flight_sample(v3_load(w->extinction + 3 * medium), v3_load(w->albedo + 3 * medium), p->throughput, limit,
+                             u.x, u.y);
+    p->throughput = v3_mul(p->throughput, f.weight);
+    *distance = f.distance;
+    return f.scatters;
+}
+
+/* An event in a medium; false: the path ends. */
+static bool scatter_in_medium(const path_context *c, path *p, float distance) {
+    vec3 wo = v3_neg(p->direction), position = v3_madd(p->origin, distance, p->direction);
+    uint32_t medium = medium_top(p->media);
+    float g = c->world->media[medium].g, density;
+    if (c->light_cdf) {
+        light_sampled r = draw_light(c, p, position, &density);
+        vec3 to = v3_sub(r.target, position);
+        bool placed = r.distance < INFINITY;
+        float length = v3_length(to);
+        shading_connection n = {flight_connect(wo, g, c->estimator, p->throughput, &r, density), position,
+                                placed ? v3_scale(to, 1.0f / fm_max(length, 1e-30f)) : r.wi, placed ? length : INFINITY};
+        reach(c, p, &n, medium, r.distance);
+    }
+    vec2 direction = draw(c, p, SAMPLE_BSDF), lobe = draw(c, p, SAMPLE_LOBE);
+    vec3 wi = phase_sample(wo, g, direction);
+    roulette policy = roulette_in_medium(c, p->depth);
+    p->throughput = v3_scale(p->throughput, roulette_weight(&policy, p->throughput, p->squeeze, lobe.y));
+    p->origin = position, p->direction = wi, p->pdf = phase_value(wo, wi, g);
+    p->cone = (cone){0};
+    p->events++;
+    return v3_max(p->throughput) > 0.0f;
 }
 
 /* The cone of the ray that p has become; it came along `came`. */
@@ -329,33 +380,53 @@ static bool scatter(const path_context *c, path *p, const hit *h, const shading 
     return v3_max(p->throughput) > 0.0f;
 }
 
+/* Bounces past the limit, or events in media past theirs. */
+static int past_limit(const path_context *c, const path *p, bool scattered) {
+    int bounces = scattered ? -1 : (int)(p->depth - p->events) - (int)c->max_depth;
+    int events = (int)p->events - MEDIUM_EVENTS_MAX;
+    return bounces > events ? bounces : events;
+}
+
+/* What the path collects at the surface that it met, before it is lit. */
+static shading arrive(const path_context *c, path *p, const hit *h) {
+    if (c->world->absorbs)
+        p->throughput = v3_mul(p->throughput, medium_transmittance(c->world->absorption, medium_top(p->media), h->p.hit.t));
+    vec3 wo = v3_neg(p->direction), normal = h->p.shading, emission;
+    surface s = look_up(c, h, &emission, &normal);
+    bound(c, p, h, &s);
+    normal = surface_face(normal, wo);
+    if (c->world->emits) emit(c, p, h, emission);
+    return shading_make(mask_of(h->material->kind), &s, h->p.position, h->p.geometric, normal, h->p.reach, wo);
+}
+
 oracle_result oracle_trace(const path_context *c, path_sample sample) {
     path p = start(c, sample);
     oracle_result out = {.alpha = 1};
-    bool beyond = false;
-    for (;; p.depth++) {
+    bool beyond = false, goes_on = true;
+    for (; goes_on; p.depth++) {
         hit h;
+        shading point;
+        float distance;
         if (!find(c, &p, &h)) {
             if (p.depth == 0) out.alpha = 0;
             escape(c, &p);
             break;
         }
-        if (c->world->absorbs)
-            p.throughput = v3_mul(p.throughput, medium_transmittance(c->world->extinction, medium_top(p.media), h.p.hit.t));
-        vec3 wo = v3_neg(p.direction), normal = h.p.shading, emission;
-        surface s = look_up(c, &h, &emission, &normal);
-        bound(c, &p, &h, &s);
-        normal = surface_face(normal, wo);
-        if (c->world->emits) emit(c, &p, &h, emission);
-        if (p.depth >= c->max_depth) {
-            if (!path_is_probe(p.point.seed, p.point.index) || p.depth >= c->max_depth + PROBE_DEPTHS) break;
+        bool scattered = c->world->scatters && fly(c, &p, &h, &distance);
+        if (!scattered) point = arrive(c, &p, &h);
+        int past = past_limit(c, &p, scattered);
+        if (past >= 0) {
+            if (!path_is_probe(p.point.seed, p.point.index) || past >= PROBE_DEPTHS) break;
             if (!beyond) out.radiance = p.radiance, p.radiance = v3_splat(0);
             beyond = true;
         }
+        if (scattered) {
+            goes_on = scatter_in_medium(c, &p, distance);
+            continue;
+        }
         unsigned mask = mask_of(h.material->kind);
-        shading point = shading_make(mask, &s, h.p.position, h.p.geometric, normal, h.p.reach, wo);
         if (c->light_cdf) connect(c, &p, &h, &point, mask);
-        if (!scatter(c, &p, &h, &point, mask)) break;
+        goes_on = scatter(c, &p, &h, &point, mask);
     }
     *(beyond ? &out.beyond : &out.radiance) = p.radiance;
     return out;
