@@ -2,7 +2,8 @@
 #include "render/path/medium.h"
 #include "render/path/stages.h"
 
-/* Lanes in media that scatter, and which of them scatter before the surface. */
+/* Lanes in media that scatter, and which of them scatter before the surface. They are gathered in arrays that the light
+ * sample will need only later. */
 void STAGE(flight)(const path_context *c, batch *b) {
     const world *w = c->world;
     path_state *s = batch_state(b);
@@ -15,25 +16,25 @@ void STAGE(flight)(const path_context *c, batch *b) {
         if (!w->media[medium].scatters || h->triangle[i] >= TRIANGLE_REFUSED) continue;
         ray_crossing met = {h->triangle[i], h->instance[i], h->t[i], h->u[i], h->v[i]};
         x->tfar[count] = flight_limit(w, v3(s->ox[i], s->oy[i], s->oz[i]), v3(s->dx[i], s->dy[i], s->dz[i]), &met);
-        x->order[count] = medium;
+        x->rr[count] = s->tr[i], x->rg[count] = s->tg[i], x->rb[count] = s->tb[i];
+        x->light[count] = s->seed[i], x->light_kind[count] = s->index[i];
+        const float *sigma = w->extinction + 3 * (size_t)medium, *albedo = w->albedo + 3 * (size_t)medium;
+        x->e1x[count] = sigma[0], x->e1y[count] = sigma[1], x->e1z[count] = sigma[2];
+        x->e2x[count] = albedo[0], x->e2y[count] = albedo[1], x->e2z[count] = albedo[2];
         x->list[count++] = i;
     }
-    const float *extinction = w->extinction, *albedo = w->albedo;
-    const uint32_t *list = x->list, *media = x->order;
     int independent = c->independent;
     LANE_LOOP (uint32_t k = 0; k < count; k++) {
-        uint32_t i = list[k];
-        int32_t m = 3 * (int32_t)media[k];
-        vec2 u = sample_pair(independent, (sample_point){s->index[i], s->seed[i]}, SAMPLE_FLIGHT, depth);
-        vec3 throughput = {s->tr[i], s->tg[i], s->tb[i]};
-        flight f = flight_sample(v3(extinction[m], extinction[m + 1], extinction[m + 2]),
-                                 v3(albedo[m], albedo[m + 1], albedo[m + 2]), throughput, x->tfar[k], u.x, u.y);
+        vec2 u = sample_pair(independent, (sample_point){x->light_kind[k], x->light[k]}, SAMPLE_FLIGHT, depth);
+        vec3 throughput = {x->rr[k], x->rg[k], x->rb[k]};
+        vec3 extinction = {x->e1x[k], x->e1y[k], x->e1z[k]}, albedo = {x->e2x[k], x->e2y[k], x->e2z[k]};
+        flight f = flight_sample(extinction, albedo, throughput, x->tfar[k], u.x, u.y);
         x->distance[k] = f.distance;
         x->u_fine[k] = f.scatters ? 1.0f : 0.0f;
         x->cr[k] = f.weight.x, x->cg[k] = f.weight.y, x->cb[k] = f.weight.z;
     }
     for (uint32_t k = 0; k < count; k++) {
-        uint32_t i = list[k];
+        uint32_t i = x->list[k];
         s->tr[i] *= x->cr[k], s->tg[i] *= x->cg[k], s->tb[i] *= x->cb[k];
         if (x->u_fine[k] < 0.5f) continue;
         h->t[i] = x->distance[k];
