@@ -388,7 +388,7 @@ static int past_limit(const path_context *c, const path *p, bool scattered) {
 }
 
 /* What the path collects at the surface that it met, before it is lit. */
-static shading arrive(const path_context *c, path *p, const hit *h) {
+static shading arrive(const path_context *c, path *p, hit *h) {
     if (c->world->absorbs)
         p->throughput = v3_mul(p->throughput, medium_transmittance(c->world->absorption, medium_top(p->media), h->p.hit.t));
     vec3 wo = v3_neg(p->direction), normal = h->p.shading, emission;
