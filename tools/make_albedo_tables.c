@@ -69,11 +69,25 @@ static double albedo(what w, double mu, double alpha, double eta) {
     return sum / N;
 }
 
-static double grazing_mu(int i, double alpha) {
-    double s = pow((double)i / (ALBEDO_GRAZING - 1), 2);
-    return alpha * s / (1 + alpha - s);
+/* cos θ at a coordinate t: the inverse of albedo_cosine_node's, bisected. */
+static double cosine_at(double t, double alpha) {
+    double low = 0, high = 1, share = (double)ALBEDO_COSINE_SHARE;
+    for (int i = 0; i < 60; i++) {
+        double mu = 0.5 * (low + high), there = (1 - share) * sqrt(mu * (1 + alpha) / (mu + alpha)) + share * mu;
+        *(there < t ? &low : &high) = mu;
+    }
+    return 0.5 * (low + high);
 }
-static double shape_mu(int i) { return pow((double)i / (ALBEDO_SHAPE - 1), 2); }
+static double column_mu(int i, double alpha) { return cosine_at((double)i / (ALBEDO_COSINES - 1), alpha); }
+
+/* What the table of Schlick's share holds. */
+static double schlick_relative(double mu, double alpha) {
+    double share = albedo(SCHLICK, mu, alpha, 1) / albedo(FULL, mu, alpha, 1);
+    return (1 - pow(share, 0.2)) / (mu + alpha);
+}
+
+/* As the table holds it: losses must be those of the very entries. */
+static double rounded(double value) { return round(value * 1e5) * 1e-5; }
 
 static void put(double value) {
     static int column;
@@ -81,28 +95,53 @@ static void put(double value) {
     column++;
 }
 
-static void print_rows(const char *name, what w, int n, const char *size) {
-    printf("const float %s[%s] = {\n", name, size);
-    for (int j = 0; j < ALBEDO_ROUGHNESS; j++)
-        for (int i = 0; i < n; i++) {
-            double a = albedo_row_alpha(j), mu = w == SCHLICK ? shape_mu(i) : grazing_mu(i, a);
-            put(albedo(w, mu, a, 1) / (w == SCHLICK ? albedo(FULL, mu, a, 1) : 1));
+/* 2 ∫ E(mu) mu dmu over one row of nodes, E linear in t as the look-up has it; times Schlick's share, unless that row is
+ * NULL. By midpoints. */
+static double mean_of_row(const double *row, const double *schlick, double alpha) {
+    enum { STEPS = 16 };
+    double sum = 0, before = 0;
+    for (int i = 0; i + 1 < ALBEDO_COSINES; i++)
+        for (int k = 1; k <= STEPS; k++) {
+            double f = (k - 0.5) / STEPS, value = row[i] + f * (row[i + 1] - row[i]);
+            double mu = cosine_at((i + (double)k / STEPS) / (ALBEDO_COSINES - 1), alpha);
+            if (schlick) {
+                double middle = cosine_at((i + f) / (ALBEDO_COSINES - 1), alpha);
+                value *= pow(1 - (schlick[i] + f * (schlick[i + 1] - schlick[i])) * (middle + alpha), 5);
+            }
+            sum += value * (mu * mu - before * before);
+            before = mu;
         }
-    printf("};\n\n");
+    return sum;
 }
 
-/* 2 ∫ E mu dmu */
-static void print_means(const char *name, what w) {
-    printf("const float %s[ALBEDO_ROUGHNESS] = {\n", name);
+/* What a table of losses holds at a finer row j: 1 less the mean of look-ups between the rows of E, over alpha². Row 0
+ * is that of the first roughness above 0, under which lobes are mirrors. */
+static double relative_loss(double rows[][ALBEDO_COSINES], int j) {
+    double at = (double)(j > 0 ? j : 1) / ALBEDO_FINER, r = at / (ALBEDO_ROUGHNESS - 1), between[ALBEDO_COSINES];
+    int low = at < ALBEDO_ROUGHNESS - 2 ? (int)at : ALBEDO_ROUGHNESS - 2;
+    for (int i = 0; i < ALBEDO_COSINES; i++) between[i] = rows[low][i] + (at - low) * (rows[low + 1][i] - rows[low][i]);
+    return (1 - mean_of_row(between, NULL, r * r)) / pow(r, 4);
+}
+
+static void print_reflection(void) {
+    double full[ALBEDO_ROUGHNESS][ALBEDO_COSINES], schlick[ALBEDO_ROUGHNESS][ALBEDO_COSINES];
+    double schlick_mean[ALBEDO_ROUGHNESS];
+    printf("const float albedo_full_table[ALBEDO_SLICE] = {\n");
     for (int j = 0; j < ALBEDO_ROUGHNESS; j++) {
-        enum { N = 256 };
-        double sum = 0;
-        for (int i = 0; i < N; i++) {
-            double t = (i + 0.5) / N, mu = t * t; /* dmu = 2 t dt */
-            sum += albedo(w, mu, albedo_row_alpha(j), 1) * 2 * mu * 2 * t / N;
+        double a = albedo_row_alpha(j);
+        for (int i = 0; i < ALBEDO_COSINES; i++) {
+            put(full[j][i] = rounded(albedo(FULL, column_mu(i, a), a, 1)));
+            schlick[j][i] = schlick_relative(column_mu(i, a), a);
         }
-        put(sum);
+        schlick_mean[j] = mean_of_row(full[j], schlick[j], a);
     }
+    printf("};\n\nconst float albedo_full_loss_table[ALBEDO_LOSSES] = {\n");
+    for (int j = 0; j < ALBEDO_LOSSES; j++) put(relative_loss(full, j));
+    printf("};\n\nconst float albedo_schlick_table[ALBEDO_SLICE] = {\n");
+    for (int j = 0; j < ALBEDO_ROUGHNESS; j++)
+        for (int i = 0; i < ALBEDO_COSINES; i++) put(schlick[j][i]);
+    printf("};\n\nconst float albedo_schlick_mean_table[ALBEDO_ROUGHNESS] = {\n");
+    for (int j = 0; j < ALBEDO_ROUGHNESS; j++) put(schlick_mean[j]);
     printf("};\n\n");
 }
 
@@ -112,32 +151,18 @@ static double slice_eta(int k) {
     return (1 + x) / (1 - x);
 }
 
-/* 2 ∫ E(mu) mu dmu over one row of nodes, E linear in t as the look-up has it: midpoints. */
-static double mean_of_row(const double *row, double alpha) {
-    enum { STEPS = 32 };
-    double sum = 0, before = 0;
-    for (int i = 0; i + 1 < ALBEDO_GRAZING; i++)
-        for (int k = 1; k <= STEPS; k++) {
-            double t = (i + (double)k / STEPS) / (ALBEDO_GRAZING - 1), s = t * t, mu = alpha * s / (1 + alpha - s);
-            sum += (row[i] + (k - 0.5) / STEPS * (row[i + 1] - row[i])) * (mu * mu - before * before);
-            before = mu;
-        }
-    return sum;
-}
-
 static void print_interface(void) {
-    static double mean[ALBEDO_IORS][ALBEDO_ROUGHNESS];
+    static double rows[ALBEDO_IORS][ALBEDO_ROUGHNESS][ALBEDO_COSINES];
     printf("const float albedo_interface_table[ALBEDO_SLICE * ALBEDO_IORS] = {\n");
     for (int k = 0; k < ALBEDO_IORS; k++)
         for (int j = 0; j < ALBEDO_ROUGHNESS; j++) {
-            double a = albedo_row_alpha(j), row[ALBEDO_GRAZING];
-            for (int i = 0; i < ALBEDO_GRAZING; i++)
-                put(row[i] = albedo(INTERFACE, grazing_mu(i, a), a, slice_eta(k)));
-            mean[k][j] = mean_of_row(row, a);
+            double a = albedo_row_alpha(j);
+            for (int i = 0; i < ALBEDO_COSINES; i++)
+                put(rows[k][j][i] = rounded(albedo(INTERFACE, column_mu(i, a), a, slice_eta(k))));
         }
-    printf("};\n\nconst float albedo_interface_mean_table[ALBEDO_ROUGHNESS * ALBEDO_IORS] = {\n");
+    printf("};\n\nconst float albedo_interface_loss_table[ALBEDO_LOSSES * ALBEDO_IORS] = {\n");
     for (int k = 0; k < ALBEDO_IORS; k++)
-        for (int j = 0; j < ALBEDO_ROUGHNESS; j++) put(mean[k][j]);
+        for (int j = 0; j < ALBEDO_LOSSES; j++) put(relative_loss(rows[k], j));
     printf("};\n");
 }
 
@@ -196,10 +221,7 @@ static void print_sheen(void) {
 
 int main(void) {
     printf("/* Printed by tools/make_albedo_tables.c. */\n#include \"render/bsdf/albedo.h\"\n\n");
-    print_rows("albedo_full_table", FULL, ALBEDO_GRAZING, "ALBEDO_SLICE");
-    print_means("albedo_full_mean_table", FULL);
-    print_rows("albedo_schlick_table", SCHLICK, ALBEDO_SHAPE, "ALBEDO_SHAPE * ALBEDO_ROUGHNESS");
-    print_means("albedo_schlick_mean_table", SCHLICK);
+    print_reflection();
     print_interface();
     print_sheen();
     return 0;

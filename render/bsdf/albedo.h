@@ -1,9 +1,9 @@
 /* render/bsdf/albedo.h: directional albedos of GGX interfaces and of sheen, for energy compensation, from tables.
  *
- * A table runs over a coordinate of cos θ and over perceptual roughness, bilinear. Two coordinates serve:
- * near grazing everything happens at cos θ ~ alpha, hence t = sqrt(cos θ (1 + alpha)/(cos θ + alpha)); the Fresnel
- * term's own shape wants sqrt(cos θ). Means are
- * cosine-weighted over the hemisphere. */
+ * A table runs over a coordinate t of cos θ and over perceptual roughness, bilinear. Near grazing everything happens at
+ * cos θ ~ alpha, hence sqrt(cos θ (1 + alpha)/(cos θ + alpha)); dips at critical angles want cos θ itself: t is a mixture
+ * of both. What compensation makes of the tables is within 0.5 % (tests/render/test_bsdf_energy.c). Means are
+ * cosine-weighted over the hemisphere, and of what look-ups give. */
 #ifndef KILN_RENDER_BSDF_ALBEDO_H
 #define KILN_RENDER_BSDF_ALBEDO_H
 
@@ -12,20 +12,24 @@
 
 #include "render/bsdf/lobes/sheen.h"
 
-enum { ALBEDO_GRAZING = 24, ALBEDO_SHAPE = 16, ALBEDO_ROUGHNESS = 16, ALBEDO_IORS = 64 };
-enum { ALBEDO_SLICE = ALBEDO_GRAZING * ALBEDO_ROUGHNESS };
+enum { ALBEDO_COSINES = 32, ALBEDO_ROUGHNESS = 20, ALBEDO_IORS = 64 };
+enum { ALBEDO_SLICE = ALBEDO_COSINES * ALBEDO_ROUGHNESS };
+enum { ALBEDO_FINER = 4, ALBEDO_LOSSES = (ALBEDO_ROUGHNESS - 1) * ALBEDO_FINER + 1 }; /* rows of losses */
+#define ALBEDO_COSINE_SHARE 0.3f /* of cos θ in t */
 /* Slices of the interface table stand at x = ±ALBEDO_X_MAX k², x = (η − 1)/(η + 1): denser where η is near 1. */
 #define ALBEDO_X_MAX 0.9f
 
-/* With F = 1: what one scattering event returns; t by roughness, and its mean by roughness. */
+/* With F = 1: what one scattering event returns; t by roughness. And 1 less its mean, over alpha², for that hardly varies:
+ * near grazing a nearly smooth surface loses percents that its mean loss of 10⁻⁵ must still scale. */
 extern const float albedo_full_table[ALBEDO_SLICE];
-extern const float albedo_full_mean_table[ALBEDO_ROUGHNESS];
-/* The share of it that goes with Schlick's (1 − cos)^5; sqrt(cos θ) by roughness, and the mean of the product. */
-extern const float albedo_schlick_table[ALBEDO_SHAPE * ALBEDO_ROUGHNESS];
+extern const float albedo_full_loss_table[ALBEDO_LOSSES];
+/* The share of it that goes with Schlick's (1 − cos)^5, as the one cosine c that has this share, over cos θ + alpha: that
+ * is smooth where the share itself bends. And the mean of the product. */
+extern const float albedo_schlick_table[ALBEDO_SLICE];
 extern const float albedo_schlick_mean_table[ALBEDO_ROUGHNESS];
 /* Reflection and refraction together at a dielectric interface: t by roughness by η of the far side over wo's. */
 extern const float albedo_interface_table[ALBEDO_SLICE * ALBEDO_IORS];
-extern const float albedo_interface_mean_table[ALBEDO_ROUGHNESS * ALBEDO_IORS];
+extern const float albedo_interface_loss_table[ALBEDO_LOSSES * ALBEDO_IORS];
 
 /* GGX alpha of a row. Roughness 0 is a mirror; its row is that of a roughness near enough to have a limit. */
 static inline double albedo_row_alpha(int row) {
@@ -56,22 +60,34 @@ static inline float albedo_linear(const float *table, albedo_node node) {
     return table[node.index] + node.fraction * (table[node.index + 1] - table[node.index]);
 }
 
-/* mu = cos θ ≥ 0 */
-static inline float albedo_grazing_coordinate(float mu, float alpha) {
-    return sqrtf(mu * (1.0f + alpha) / (mu + alpha + 1e-30f)); /* alpha 0 at mu 0 */
+/* Where mu = cos θ ≥ 0 lies among the columns. */
+static inline albedo_node albedo_cosine_node(float mu, float alpha) {
+    float grazing = sqrtf(mu * (1.0f + alpha) / (mu + alpha + 1e-30f)); /* alpha 0 at mu 0 */
+    return albedo_node_of((1.0f - ALBEDO_COSINE_SHARE) * grazing + ALBEDO_COSINE_SHARE * mu, ALBEDO_COSINES);
 }
 
 /* One row of a material's roughness serves all look-ups of a shading point. */
 static inline albedo_node albedo_roughness_node(float roughness) { return albedo_node_of(roughness, ALBEDO_ROUGHNESS); }
 
-static inline float albedo_full(float mu, float alpha, albedo_node roughness) {
-    return albedo_bilinear(albedo_full_table, ALBEDO_GRAZING,
-                           albedo_node_of(albedo_grazing_coordinate(mu, alpha), ALBEDO_GRAZING), roughness);
+/* Mean losses bend more between rows than what they are the means of: their rows are finer. */
+typedef struct albedo_loss { albedo_node row; float alpha2; } albedo_loss; /* alpha² */
+static inline albedo_loss albedo_loss_of(albedo_node roughness) {
+    float r = ((float)roughness.index + roughness.fraction) * (1.0f / (ALBEDO_ROUGHNESS - 1)), alpha = r * r;
+    return (albedo_loss){albedo_node_of(r, ALBEDO_LOSSES), alpha * alpha};
 }
-static inline float albedo_full_mean(albedo_node roughness) { return albedo_linear(albedo_full_mean_table, roughness); }
 
-static inline float albedo_schlick_share(float mu, albedo_node roughness) {
-    return albedo_bilinear(albedo_schlick_table, ALBEDO_SHAPE, albedo_node_of(sqrtf(mu), ALBEDO_SHAPE), roughness);
+static inline float albedo_full(float mu, float alpha, albedo_node roughness) {
+    return albedo_bilinear(albedo_full_table, ALBEDO_COSINES, albedo_cosine_node(mu, alpha), roughness);
+}
+static inline float albedo_full_mean(albedo_node roughness) {
+    albedo_loss l = albedo_loss_of(roughness);
+    return 1.0f - l.alpha2 * albedo_linear(albedo_full_loss_table, l.row);
+}
+
+static inline float albedo_schlick_share(float mu, float alpha, albedo_node roughness) {
+    float relative = albedo_bilinear(albedo_schlick_table, ALBEDO_COSINES, albedo_cosine_node(mu, alpha), roughness);
+    float m = 1.0f - relative * (mu + alpha), m2 = m * m;
+    return m2 * m2 * m;
 }
 static inline float albedo_schlick_mean(albedo_node roughness) {
     return albedo_linear(albedo_schlick_mean_table, roughness);
@@ -84,14 +100,15 @@ static inline albedo_node albedo_ior_node(float eta) {
 }
 
 static inline float albedo_interface(albedo_node ior, float mu, float alpha, albedo_node roughness) {
-    albedo_node column = albedo_node_of(albedo_grazing_coordinate(mu, alpha), ALBEDO_GRAZING);
+    albedo_node column = albedo_cosine_node(mu, alpha);
     column.index += ior.index * ALBEDO_SLICE;
-    float low = albedo_bilinear(albedo_interface_table, ALBEDO_GRAZING, column, roughness);
+    float low = albedo_bilinear(albedo_interface_table, ALBEDO_COSINES, column, roughness);
     column.index += ALBEDO_SLICE;
-    return low + ior.fraction * (albedo_bilinear(albedo_interface_table, ALBEDO_GRAZING, column, roughness) - low);
+    return low + ior.fraction * (albedo_bilinear(albedo_interface_table, ALBEDO_COSINES, column, roughness) - low);
 }
 static inline float albedo_interface_mean(albedo_node ior, albedo_node roughness) {
-    return albedo_bilinear(albedo_interface_mean_table, ALBEDO_ROUGHNESS, roughness, ior);
+    albedo_loss l = albedo_loss_of(roughness);
+    return 1.0f - l.alpha2 * albedo_bilinear(albedo_interface_loss_table, ALBEDO_LOSSES, l.row, ior);
 }
 
 /* Of a white sheen lobe (lobes/sheen.h). Rows of roughness k/25 have one at each end and one at the kink,

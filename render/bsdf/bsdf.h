@@ -27,6 +27,10 @@ enum {
     BSDF_TRANSMISSIVE = 1 << 1, /* TRANSMISSION and BELOW too; implies GLOSSY */
 };
 
+/* A mean loss is a divisor, and its inverse the largest weight of a sample of what is given back: nearly smooth surfaces,
+ * whose loss is all at grazing angles, get less back than they lose. */
+#define BSDF_LEAST_LOSS 1e-4f
+
 /* What the material says at a point. */
 typedef struct surface {
     vec3 base;
@@ -89,7 +93,7 @@ KERNEL float bsdf_full(float mu, float alpha, albedo_node roughness) {
 }
 /* The mean of Schlick's (1 − cos)^5 over what is reflected, seen from mu. */
 KERNEL float bsdf_schlick_share(const bsdf *b, float mu, albedo_node roughness) {
-    return fm_lerp(albedo_schlick_share(mu, roughness), fresnel_schlick_weight(mu), bsdf_is_mirror(b->alpha) ? 1.0f : 0.0f);
+    return fm_lerp(albedo_schlick_share(mu, b->alpha, roughness), fresnel_schlick_weight(mu), bsdf_is_mirror(b->alpha) ? 1.0f : 0.0f);
 }
 /* What the coat reflects in all, seen from mu: full is bsdf_full there. */
 KERNEL vec3 bsdf_coat_albedo(const bsdf *b, float mu, float full, albedo_node roughness) {
@@ -107,7 +111,7 @@ KERNEL float bsdf_interface_loss(const bsdf *b, albedo_node ior, float mu, float
 KERNEL float bsdf_interface_mean_loss(const bsdf *b, albedo_node ior, float full_mean,
                                       albedo_node roughness) {
     float e = fm_lerp(albedo_interface_mean(ior, roughness), full_mean, b->thin);
-    return fm_max(1.0f - e, 1e-4f); /* a divisor; where it is this small there is nothing to compensate */
+    return fm_max(1.0f - e, BSDF_LEAST_LOSS);
 }
 
 /* The coat over the base. */
@@ -115,8 +119,8 @@ KERNEL vec3 bsdf_make_base(bsdf *b, const surface *s, float opaque, float full, 
     vec3 coat = bsdf_coat_albedo(b, b->wo.z, full, roughness);
     vec3 mean = v3_madd(v3_scale(b->f0, full_mean), albedo_schlick_mean(roughness), v3_sub(v3_splat(b->f90), b->f0));
     vec3 enters = v3_mul(v3_scale(s->base, opaque), v3_sub(v3_splat(1.0f), coat));
-    b->diffuse = v3(enters.x / fm_max(1.0f - mean.x, 1e-4f), enters.y / fm_max(1.0f - mean.y, 1e-4f),
-                    enters.z / fm_max(1.0f - mean.z, 1e-4f));
+    b->diffuse = v3(enters.x / fm_max(1.0f - mean.x, BSDF_LEAST_LOSS), enters.y / fm_max(1.0f - mean.y, BSDF_LEAST_LOSS),
+                    enters.z / fm_max(1.0f - mean.z, BSDF_LEAST_LOSS));
     return enters;
 }
 
@@ -126,7 +130,7 @@ KERNEL vec3 bsdf_make_metal(bsdf *b, const surface *s, float full, float full_me
     vec3 again = v3(f.x * f.x * full_mean / (1.0f - lost.x), f.y * f.y * full_mean / (1.0f - lost.y),
                     f.z * f.z * full_mean / (1.0f - lost.z));
     again = v3_scale(again, s->metallic * (1.0f - full));
-    b->metal_again = v3_scale(again, 1.0f / fm_max(1.0f - full_mean, 1e-4f));
+    b->metal_again = v3_scale(again, 1.0f / fm_max(1.0f - full_mean, BSDF_LEAST_LOSS));
     return again;
 }
 
