@@ -13,7 +13,7 @@
 
 /* Surfaces of solids about one point of a ray. */
 typedef struct touch {
-    uint64_t entered, left; /* media whose fronts, and whose backs, are there: each once, for an edge shows two triangles */
+    uint64_t entered, left; /* media whose fronts, and whose backs, are there; once: an edge shows two triangles */
     ray_crossing shaded;    /* of the highest rank */
     uint32_t medium;        /* its */
     int front;

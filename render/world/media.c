@@ -117,8 +117,9 @@ static void set_medium(world *w, const kiln_decoding *decoding, const kiln_mater
 static box placed_box(const kiln_mesh *m, const mat4 *to) {
     box b = empty;
     for (int corner = 0; corner < 8; corner++) {
-        dvec3 p = mat4_point(to, (dvec3){(double)(corner & 1 ? m->max : m->min)[0], (double)(corner & 2 ? m->max : m->min)[1],
-                                         (double)(corner & 4 ? m->max : m->min)[2]});
+        double at_corner[3];
+        for (int k = 0; k < 3; k++) at_corner[k] = (double)(corner >> k & 1 ? m->max : m->min)[k];
+        dvec3 p = mat4_point(to, d3_load(at_corner));
         const double at[3] = {p.x, p.y, p.z};
         for (int k = 0; k < 3; k++) {
             b.low[k] = fminf(b.low[k], (float)at[k]), b.high[k] = fmaxf(b.high[k], (float)at[k]);
