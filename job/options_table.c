@@ -23,8 +23,8 @@ static const char picture[] = "Picture", quality[] = "When it ends", estimator[]
 /* In the order of kiln/film.h. */
 #define AOV_NAMES                                                                                                      \
     "alpha, albedo, normal, depth, position, uv, object, material, samples, error; emission, direct, indirect; "        \
-    "lobe:NAME (emission, diffuse, specular, transmission); lightgroup:NAME (a light or an emitting material, or "      \
-    "environment); cryptomatte, cryptomatte:NAME (object, material, asset)"
+    "lobe:NAME (emission, diffuse, clearcoat, sheen, translucency, specular, transmission); lightgroup:NAME (a light "   \
+    "or an emitting material, or environment); cryptomatte, cryptomatte:NAME (object, material, asset)"
 
 static const option_row rows[] = {
     {"output", 'o', "FILE", picture,

@@ -67,6 +67,9 @@ enum { KILN_MATTE_RANKS = 8 };
 #define KILN_LOBES(X)                                                                                                  \
     X(EMISSION, "emission", "light that reaches the camera without being scattered: emitters and the background")      \
     X(DIFFUSE, "diffuse", "the base under its coats")                                                                  \
+    X(CLEARCOAT, "clearcoat", "reflection of a clear coat")                                                            \
+    X(SHEEN, "sheen", "the sheen of cloth")                                                                            \
+    X(TRANSLUCENCY, "translucency", "diffuse transmission")                                                            \
     X(SPECULAR, "specular", "reflection of metal and dielectric, multiple scattering between microfacets included")    \
     X(TRANSMISSION, "transmission", "refraction, and what passes through a thin wall")
 

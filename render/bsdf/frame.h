@@ -12,6 +12,8 @@ KERNEL frame frame_make(vec3 z) {
     float sign = copysignf(1.0f, z.z), a = -1.0f / (sign + z.z), b = z.x * z.y * a;
     return (frame){v3(1.0f + sign * z.x * z.x * a, sign * b, -sign * z.x), v3(b, sign + z.y * z.y * a, -z.y), z};
 }
+/* x is of unit length and at a right angle to z. */
+KERNEL frame frame_along(vec3 z, vec3 x) { return (frame){x, v3_cross(z, x), z}; }
 KERNEL vec3 frame_to_local(const frame *f, vec3 v) { return v3(v3_dot(f->x, v), v3_dot(f->y, v), v3_dot(f->z, v)); }
 KERNEL vec3 frame_to_world(const frame *f, vec3 v) {
     return v3(f->x.x * v.x + f->y.x * v.y + f->z.x * v.z, f->x.y * v.x + f->y.y * v.y + f->z.y * v.z,

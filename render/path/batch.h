@@ -96,6 +96,18 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
     X(float, map_x) X(float, map_y) X(float, map_z) /* tangent-space normal */                                         \
     X(float, tan_x) X(float, tan_y) X(float, tan_z) X(float, tan_w)
 
+/* What the materials of KIND_LAYERED say besides. */
+#define LAYER_FIELDS(X)                                                                                                \
+    X(float, near_layers) X(float, far_layers)   /* 1: on wo's side, on the far side */                                \
+    X(float, clearcoat) X(float, clearcoat_roughness)                                                                  \
+    X(float, coat_x) X(float, coat_y) X(float, coat_z) /* tangent-space normal, then in render space, facing wo */     \
+    X(float, sheen_r) X(float, sheen_g) X(float, sheen_b) X(float, sheen_roughness)                                    \
+    X(float, anisotropy)                                                                                               \
+    X(float, along_u) X(float, along_v)          /* direction of greater roughness: from the tangent */                \
+    X(float, along_x) X(float, along_y) X(float, along_z) /* in render space, at a right angle to the normal */        \
+    X(float, film) X(float, film_ior) X(float, film_thickness)                                                         \
+    X(float, pass) X(float, pass_r) X(float, pass_g) X(float, pass_b) /* diffuse transmission, its colour */
+
 /* The light sample. */
 #define LIGHT_FIELDS(X)                                                                                                \
     X(float, wx) X(float, wy) X(float, wz)       /* direction to the light */                                          \
@@ -127,6 +139,7 @@ typedef struct path_scratch {
     POINT_FIELDS(LANE_ARRAY)
     CONE_FIELDS(LANE_ARRAY)
     MATERIAL_FIELDS(LANE_ARRAY)
+    LAYER_FIELDS(LANE_ARRAY)
     LIGHT_FIELDS(LANE_ARRAY)
     CHOSEN_FIELDS(LANE_ARRAY)
     RANDOM_FIELDS(LANE_ARRAY)

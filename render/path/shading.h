@@ -9,6 +9,7 @@
 #define SHADING_MASK_DIFFUSE 0u
 #define SHADING_MASK_GLOSSY ((unsigned)BSDF_GLOSSY)
 #define SHADING_MASK_TRANSMISSIVE ((unsigned)(BSDF_GLOSSY | BSDF_TRANSMISSIVE))
+#define SHADING_MASK_LAYERED ((unsigned)(BSDF_GLOSSY | BSDF_TRANSMISSIVE | BSDF_LAYERED))
 
 /* A shading point: its frame, its BSDF, and where rays leave from. */
 typedef struct shading {
@@ -20,8 +21,10 @@ typedef struct shading {
 
 KERNEL shading shading_make(unsigned mask, const surface *s, vec3 position, vec3 geometric, vec3 normal, float reach,
                             vec3 wo) {
-    frame f = frame_make(normal);
-    return (shading){f, bsdf_make(mask, s, frame_to_local(&f, wo)), position, geometric, reach};
+    frame f = mask & BSDF_LAYERED ? frame_along(normal, s->along) : frame_make(normal);
+    surface local = *s;
+    if (mask & BSDF_LAYERED) local.clearcoat_normal = frame_to_local(&f, s->clearcoat_normal);
+    return (shading){f, bsdf_make(mask, &local, frame_to_local(&f, wo)), position, geometric, reach};
 }
 
 /* A direction must lie on the same side of the real surface as of the shaded one, or light would leak through. */

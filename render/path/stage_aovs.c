@@ -58,6 +58,7 @@ void STAGE(aovs)(const path_context *c, batch *b) {
     write_albedo(SHADING_MASK_DIFFUSE, b, b->kinds[KIND_DIFFUSE]);
     write_albedo(SHADING_MASK_GLOSSY, b, b->kinds[KIND_GLOSSY]);
     write_albedo(SHADING_MASK_TRANSMISSIVE, b, b->kinds[KIND_TRANSMISSIVE]);
+    write_albedo(SHADING_MASK_LAYERED, b, b->kinds[KIND_LAYERED]);
     for (uint32_t i = b->surfaces; i < b->n; i++) {
         const float *albedo = c->world->albedo + 3 * (size_t)medium_top(s->media[i]);
         for (int k = 0; k < 3; k++) o->albedo[k][slot_index(s->slot[i])] = albedo[k];

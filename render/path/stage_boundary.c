@@ -7,6 +7,7 @@ static void hide(path_scratch *x, uint32_t i) {
     x->base_r[i] = x->base_g[i] = x->base_b[i] = 1.0f;
     x->metallic[i] = x->roughness[i] = x->f0[i] = 0.0f;
     x->transmission[i] = 1.0f;
+    x->near_layers[i] = x->far_layers[i] = x->anisotropy[i] = x->film[i] = x->pass[i] = 0.0f;
 }
 
 static float normal_reflectance(float eta) {

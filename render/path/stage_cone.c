@@ -34,7 +34,8 @@ void STAGE(cone_hit)(const path_context *c, batch *b) {
     }
 }
 
-KERNEL void bounce(int transmissive, int mapped, batch *b, lane_range lanes) {
+/* coated: a clear coat may have a normal map of its own: which normal bent the path is not asked. */
+KERNEL void bounce(int transmissive, int mapped, int coated, batch *b, lane_range lanes) {
     path_state *s = batch_state(b);
     const path_scratch *x = &b->scratch;
     LANE_LOOP (uint32_t i = lanes.first; i < lanes.end; i++) {
@@ -45,6 +46,7 @@ KERNEL void bounce(int transmissive, int mapped, batch *b, lane_range lanes) {
                          .pdf = s->pdf[i],
                          .eta = 1.0f};
         if (mapped) k.bumpy = (x->map_x[i] != 0.0f) | (x->map_y[i] != 0.0f);
+        if (coated) k.bumpy = 1;
         if (transmissive) {
             int crosses = x->crosses[i] != 0, thin = x->thin[i] > 0.5f;
             k.eta = x->eta[i];
@@ -59,9 +61,11 @@ KERNEL void bounce(int transmissive, int mapped, batch *b, lane_range lanes) {
 
 void STAGE(cone_scatter)(const path_context *c, batch *b) {
     int mapped = (c->world->slots & 1u << SLOT_NORMAL) != 0;
-    bounce(0, mapped, b, b->kinds[KIND_DIFFUSE]);
-    bounce(0, mapped, b, b->kinds[KIND_GLOSSY]);
-    bounce(1, mapped, b, b->kinds[KIND_TRANSMISSIVE]);
+    bounce(0, mapped, 0, b, b->kinds[KIND_DIFFUSE]);
+    bounce(0, mapped, 0, b, b->kinds[KIND_GLOSSY]);
+    bounce(1, mapped, 0, b, b->kinds[KIND_TRANSMISSIVE]);
+    if (c->world->slots & 1u << SLOT_CLEARCOAT_NORMAL) bounce(1, mapped, 1, b, b->kinds[KIND_LAYERED]);
+    else bounce(1, mapped, 0, b, b->kinds[KIND_LAYERED]);
     path_state *s = batch_state(b); /* what a medium has scattered may come to a focus anywhere */
     for (uint32_t i = b->surfaces; i < b->n; i++) s->width[i] = s->spread[i] = 0.0f;
 }

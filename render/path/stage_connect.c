@@ -62,6 +62,7 @@ void STAGE(connect)(const path_context *c, batch *b) {
     weigh(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
     weigh(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
     weigh(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
+    weigh(SHADING_MASK_LAYERED, c, b, b->kinds[KIND_LAYERED]);
     if (c->world->scatters) weigh_scattering(c, b);
     if (c->world->absorbs) attenuate(c, b);
 

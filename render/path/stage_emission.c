@@ -13,7 +13,7 @@ static void find_lights(const path_context *c, batch *b) {
         bool known = number != LIGHT_NONE && c->light_cdf;
         x->light_pdf[i] = known ? distribution_probability(c->light_cdf, which) : 0.0f;
         const world_material *m = &w->materials[x->material[i]];
-        bool shines = x->front[i] > 0.5f || m->flags & MATERIAL_DOUBLE_SIDED || m->kind == KIND_TRANSMISSIVE;
+        bool shines = x->front[i] > 0.5f || m->flags & MATERIAL_TWO_SIDED;
         if (!shines) x->emit_r[i] = x->emit_g[i] = x->emit_b[i] = 0.0f;
     }
 }

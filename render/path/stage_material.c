@@ -24,6 +24,26 @@ static void load_transmissive(const world *w, path_scratch *x, uint32_t i) {
     x->hue_r[i] = x->hue_g[i] = x->hue_b[i] = 1.0f;
 }
 
+static void load_layers(const world *w, path_scratch *x, uint32_t i) {
+    const world_material *m = &w->materials[x->material[i]];
+    bool both = m->thin > 0.5f, front = x->front[i] > 0.5f; /* a solid wears its layers outside */
+    x->near_layers[i] = both || front ? 1.0f : 0.0f;
+    x->far_layers[i] = both || !front ? 1.0f : 0.0f;
+    x->clearcoat[i] = m->clearcoat;
+    x->clearcoat_roughness[i] = m->clearcoat_roughness;
+    x->coat_x[i] = x->coat_y[i] = x->coat_z[i] = 0.0f;
+    x->sheen_r[i] = m->sheen[0], x->sheen_g[i] = m->sheen[1], x->sheen_b[i] = m->sheen[2];
+    x->sheen_roughness[i] = m->sheen_roughness;
+    x->anisotropy[i] = m->anisotropy;
+    x->along_u[i] = m->anisotropy_x, x->along_v[i] = m->anisotropy_y;
+    x->film[i] = m->film;
+    x->film_ior[i] = m->film_ior;
+    x->film_thickness[i] = m->film_thickness[1];
+    const float *pass = m->diffuse_transmission_color;
+    x->pass[i] = m->diffuse_transmission;
+    x->pass_r[i] = pass[0], x->pass_g[i] = pass[1], x->pass_b[i] = pass[2];
+}
+
 static void tint_by_vertices(const world *w, const path_hit *h, path_scratch *x, uint32_t n) {
     for (uint32_t i = 0; i < n; i++) {
         const uint32_t *v = w->triangles + 3 * (size_t)h->triangle[i];
@@ -44,13 +64,11 @@ static vec2 further_uv(const world *w, const path_hit *h, uint32_t i, uint32_t s
     return (vec2){b0 * a[0] + b1 * p[0] + b2 * q[0], b0 * a[1] + b1 * p[1] + b2 * q[1]};
 }
 
-/* Tangent-space normal (glTF 2.0, 3.9.3: x and y scaled) and the tangent that it is relative to. */
-static void load_normal_map(const world *w, const path_hit *h, path_scratch *x, uint32_t i, texel c) {
-    const world_material *m = &w->materials[x->material[i]];
+/* The tangent that normal maps and directions are relative to. */
+static void load_tangent(const world *w, const path_hit *h, path_scratch *x, uint32_t i) {
+    x->tan_x[i] = x->tan_y[i] = x->tan_z[i] = x->tan_w[i] = 0.0f;
+    if (!w->tangents) return;
     const uint32_t *v = w->triangles + 3 * (size_t)h->triangle[i];
-    x->map_x[i] = (2.0f * c.r - 1.0f) * m->normal_scale;
-    x->map_y[i] = (2.0f * c.g - 1.0f) * m->normal_scale;
-    x->map_z[i] = 2.0f * c.b - 1.0f;
     const float *a = w->tangents + 4 * (size_t)v[0], *p = w->tangents + 4 * (size_t)v[1], *q = w->tangents + 4 * (size_t)v[2];
     float b1 = h->u[i], b2 = h->v[i], b0 = 1.0f - b1 - b2, t[3];
     for (int k = 0; k < 3; k++) t[k] = b0 * a[k] + b1 * p[k] + b2 * q[k];
@@ -71,11 +89,26 @@ static texture_footprint footprint(const world *w, const path_hit *h, const path
     return cone_footprint(x->across[i], e1, e2, (vec2){p[0] - a[0], p[1] - a[1]}, (vec2){q[0] - a[0], q[1] - a[1]});
 }
 
+/* Tangent-space normal (glTF 2.0, 3.9.3: x and y scaled). */
+static vec3 map_of(texel c, float scale) {
+    return v3((2.0f * c.r - 1.0f) * scale, (2.0f * c.g - 1.0f) * scale, 2.0f * c.b - 1.0f);
+}
+
+/* The texture's direction, turned by the material's, and its share of the strength (KHR_materials_anisotropy). */
+static void apply_anisotropy(const world_material *m, path_scratch *x, uint32_t i, texel c) {
+    float u = 2.0f * c.r - 1.0f, v = 2.0f * c.g - 1.0f;
+    x->anisotropy[i] *= c.b;
+    x->along_u[i] = u * m->anisotropy_x - v * m->anisotropy_y;
+    x->along_v[i] = u * m->anisotropy_y + v * m->anisotropy_x;
+}
+
 static void apply_texture(const world *w, const path_hit *h, path_scratch *x, uint32_t i, material_slot slot,
                           const world_texture *t) {
+    const world_material *m = &w->materials[x->material[i]];
     vec2 uv = t->uv_set ? further_uv(w, h, i, t->uv_set) : (vec2){x->tu[i], x->tv[i]};
     int32_t level = t->levels ? texture_level(t, footprint(w, h, x, i, t->uv_set)) : 0;
     texel c;
+    vec3 n;
     switch (slot) {
     case SLOT_BASE:
         c = texture_sample_level(t, uv.x, uv.y, level);
@@ -90,10 +123,38 @@ static void apply_texture(const world *w, const path_hit *h, path_scratch *x, ui
         x->tint_r[i] *= c.r, x->tint_g[i] *= c.g, x->tint_b[i] *= c.b;
         break;
     case SLOT_METALLIC: x->metallic[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
-    case SLOT_ROUGHNESS: x->roughness[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_ROUGHNESS:
+        x->roughness[i] *= texture_channel_level(t, uv.x, uv.y, level);
+        if (m->flags & MATERIAL_GLOSSINESS) x->roughness[i] = 1.0f - x->roughness[i];
+        break;
     case SLOT_SPECULAR: x->specular[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
     case SLOT_TRANSMISSION: x->transmission[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
-    case SLOT_NORMAL: load_normal_map(w, h, x, i, texture_sample_level(t, uv.x, uv.y, level)); break;
+    case SLOT_NORMAL:
+        n = map_of(texture_sample_level(t, uv.x, uv.y, level), m->normal_scale);
+        x->map_x[i] = n.x, x->map_y[i] = n.y, x->map_z[i] = n.z;
+        load_tangent(w, h, x, i);
+        break;
+    case SLOT_CLEARCOAT: x->clearcoat[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_CLEARCOAT_ROUGHNESS: x->clearcoat_roughness[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_CLEARCOAT_NORMAL:
+        n = map_of(texture_sample_level(t, uv.x, uv.y, level), m->clearcoat_normal_scale);
+        x->coat_x[i] = n.x, x->coat_y[i] = n.y, x->coat_z[i] = n.z;
+        break;
+    case SLOT_SHEEN_COLOR:
+        c = texture_sample_level(t, uv.x, uv.y, level);
+        x->sheen_r[i] *= c.r, x->sheen_g[i] *= c.g, x->sheen_b[i] *= c.b;
+        break;
+    case SLOT_SHEEN_ROUGHNESS: x->sheen_roughness[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_ANISOTROPY: apply_anisotropy(m, x, i, texture_sample_level(t, uv.x, uv.y, level)); break;
+    case SLOT_FILM: x->film[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_FILM_THICKNESS:
+        x->film_thickness[i] = fm_lerp(m->film_thickness[0], m->film_thickness[1], texture_channel_level(t, uv.x, uv.y, level));
+        break;
+    case SLOT_DIFFUSE_TRANSMISSION: x->pass[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_DIFFUSE_TRANSMISSION_COLOR:
+        c = texture_sample_level(t, uv.x, uv.y, level);
+        x->pass_r[i] *= c.r, x->pass_g[i] *= c.g, x->pass_b[i] *= c.b;
+        break;
     case SLOT_OPACITY:
     case SLOT_COUNT: break;
     }
@@ -111,9 +172,13 @@ void STAGE(material)(const path_context *c, batch *b) {
     const path_hit *h = batch_hit(b);
     path_scratch *x = &b->scratch;
     for (uint32_t i = 0; i < b->surfaces; i++) load_diffuse(w, x, i);
-    for (uint32_t i = b->kinds[KIND_GLOSSY].first; i < b->kinds[KIND_TRANSMISSIVE].end; i++) load_glossy(w, x, i);
-    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_TRANSMISSIVE].end; i++)
+    for (uint32_t i = b->kinds[KIND_GLOSSY].first; i < b->kinds[KIND_LAYERED].end; i++) load_glossy(w, x, i);
+    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_LAYERED].end; i++)
         load_transmissive(w, x, i);
+    for (uint32_t i = b->kinds[KIND_LAYERED].first; i < b->kinds[KIND_LAYERED].end; i++) {
+        load_layers(w, x, i);
+        load_tangent(w, h, x, i);
+    }
     if (w->colors) tint_by_vertices(w, h, x, b->surfaces);
     if (w->slots & 1u << SLOT_NORMAL) for (uint32_t i = 0; i < b->surfaces; i++) x->map_x[i] = x->map_y[i] = 0.0f;
     for (int slot = 0; slot < SLOT_COUNT; slot++)

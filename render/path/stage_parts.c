@@ -60,6 +60,7 @@ void STAGE(part_light)(const path_context *c, batch *b) {
         record_first(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
         record_first(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
         record_first(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
+        record_first(SHADING_MASK_LAYERED, c, b, b->kinds[KIND_LAYERED]);
         for (uint32_t i = b->surfaces; i < b->n; i++)
             if (counts(s, i) && x->visible[i] == RAY_REACHES)
                 parts_record(c->parts, b->parts, slot_index(s->slot[i]), radiance_of(s, i), BOUNCE_DIRECT,
@@ -89,6 +90,7 @@ void STAGE(part_scatter)(const path_context *c, batch *b) {
     share_first(SHADING_MASK_DIFFUSE, b, b->kinds[KIND_DIFFUSE]);
     share_first(SHADING_MASK_GLOSSY, b, b->kinds[KIND_GLOSSY]);
     share_first(SHADING_MASK_TRANSMISSIVE, b, b->kinds[KIND_TRANSMISSIVE]);
+    share_first(SHADING_MASK_LAYERED, b, b->kinds[KIND_LAYERED]);
     const path_state *s = batch_state(b);
     for (uint32_t i = b->surfaces; i < b->n; i++)
         if (counts(s, i)) *shares_of(b, s, i) = scattered;

@@ -7,7 +7,7 @@ enum { CULLED_LAYERS = 1024 };
 static bool is_culled(const world *w, const path_state *s, const path_hit *h, uint32_t i) {
     if (h->triangle[i] >= TRIANGLE_REFUSED) return false;
     const world_material *m = &w->materials[w->triangle_material[h->triangle[i]]];
-    if (m->flags & MATERIAL_DOUBLE_SIDED || m->kind == KIND_TRANSMISSIVE) return false;
+    if (m->flags & MATERIAL_TWO_SIDED) return false;
     vec3 d = v3(s->dx[i], s->dy[i], s->dz[i]);
     return v3_dot(lookup_facing(w, h->triangle[i], h->instance[i]), d) > 0.0f;
 }

@@ -5,6 +5,7 @@
 #include "base/fmath.h"
 #include "base/kernel.h"
 #include "base/vec.h"
+#include "render/bsdf/frame.h"
 
 typedef struct triangle_hit { float u, v, t; } triangle_hit;
 
@@ -102,6 +103,17 @@ KERNEL vec3 surface_map(vec3 normal, vec3 tangent, float w, vec3 map, float fron
     usable = usable & (bent2 > 1e-12f);
     bent = v3_scale(bent, 1.0f / sqrtf(usable ? bent2 : 1.0f));
     return v3_select(usable, bent, normal);
+}
+
+/* The direction (u, v) of the tangent frame on the surface of a shading normal that faces wo, of unit length; any if there
+ * is none. w, front: as above. */
+KERNEL vec3 surface_along(vec3 normal, vec3 tangent, float w, float u, float v, float front) {
+    float side = front > 0.5f ? 1.0f : -1.0f;
+    vec3 t = v3_madd(tangent, -v3_dot(tangent, normal), normal), b = v3_scale(v3_cross(normal, t), w * side);
+    vec3 along = v3_madd(v3_scale(t, u), v, b);
+    float length2 = v3_dot(along, along);
+    int usable = length2 > 1e-12f * v3_dot(tangent, tangent) * (u * u + v * v);
+    return v3_select(usable, v3_scale(along, 1.0f / sqrtf(usable ? length2 : 1.0f)), frame_make(normal).x);
 }
 
 /* A shading normal that faces away from wo has no meaning for a reflection: it is turned until wo just grazes the

@@ -190,7 +190,7 @@ static bool allocate(world *w, uint64_t vertices, uint64_t triangles) {
     w->triangles = ARENA_ARRAY(&w->arena, uint32_t, 3 * triangles + 4);
     w->triangle_material = ARENA_ARRAY(&w->arena, uint32_t, triangles + 1);
     bool done = w->vertices && w->triangles && w->triangle_material;
-    if (w->slots & 1u << SLOT_NORMAL) done = done && (w->tangents = ARENA_ARRAY(&w->arena, float, 4 * vertices + 4));
+    if (w->wants_tangents) done = done && (w->tangents = ARENA_ARRAY(&w->arena, float, 4 * vertices + 4));
     if (w->has_colors) done = done && (w->colors = ARENA_ARRAY(&w->arena, float, 4 * vertices + 4));
     for (uint32_t k = 1; k < w->uv_set_count; k++)
         done = done && (w->uvs[k] = ARENA_ARRAY(&w->arena, float, 2 * vertices + 2));
@@ -317,10 +317,10 @@ void world_place_instance(world *w, const kiln_instance *from, const kiln_mesh *
     for (int g = 0; g < 2; g++) to->triangle_base[g] = w->prototypes[prototype].first[g];
 }
 
-static bool is_normal_mapped(const world *w, const kiln_mesh *m) {
-    if (!m->face_materials) return w->materials[m->material].texture[SLOT_NORMAL] != 0;
+static bool uses_tangents(const world *w, const kiln_mesh *m) {
+    if (!m->face_materials) return material_uses_tangents(&w->materials[m->material]);
     for (uint32_t f = 0; f < m->face_count; f++)
-        if (w->materials[m->face_materials[f]].texture[SLOT_NORMAL]) return true;
+        if (material_uses_tangents(&w->materials[m->face_materials[f]])) return true;
     return false;
 }
 
@@ -328,10 +328,11 @@ static bool is_normal_mapped(const world *w, const kiln_mesh *m) {
 static void warn_of_missing_tangents(const build *b, kiln_report *report) {
     for (uint32_t i = 0; i < b->scene->mesh_count; i++) {
         const kiln_mesh *m = b->shapes[i].mesh;
-        if (!m || mesh_primvar(m, KILN_PRIMVAR_TANGENT, 0) || !is_normal_mapped(b->world, m)) continue;
+        if (!m || mesh_primvar(m, KILN_PRIMVAR_TANGENT, 0) || !uses_tangents(b->world, m)) continue;
         kiln_where where = where_root(m->name);
         report_warning(report, KILN_CODE_GEOMETRY, &where, "give the mesh a KILN_PRIMVAR_TANGENT",
-                       "a mesh without tangents has a material with a normal map: the map is left out");
+                       "a mesh without tangents has a material with a normal map or anisotropy: maps are left out, and "
+                       "highlights stretch along no direction of the mesh's own");
     }
 }
 
@@ -361,7 +362,7 @@ static bool run(build *b, uint32_t threads, kiln_report *report) {
     choose_baking(b);
     w->has_colors = has_colors(b);
     warn_of_motion(b, report);
-    if (w->slots & 1u << SLOT_NORMAL) warn_of_missing_tangents(b, report);
+    if (w->wants_tangents) warn_of_missing_tangents(b, report);
     threads_for(threads, b->scene->mesh_count, make_shape, b);
     b->placements = array_alloc((size_t)b->scene->instance_count + b->prototype_count, sizeof *b->placements);
     b->prototype_centers = array_alloc(b->prototype_count, sizeof *b->prototype_centers);

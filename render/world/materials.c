@@ -29,8 +29,38 @@ typedef struct builder {
 static bool transmits(const kiln_material *m) {
     return m->layers & KILN_LAYER_TRANSMISSION && m->transmission.value > 0;
 }
+static bool passes_diffusely(const kiln_material *m) {
+    return m->layers & KILN_LAYER_DIFFUSE_TRANSMISSION && m->diffuse_transmission.value > 0;
+}
 static bool emits(const kiln_material *m) {
     return m->emission.value[0] > 0 || m->emission.value[1] > 0 || m->emission.value[2] > 0;
+}
+
+/* The same of its layers. */
+static int list_layer_slots(const kiln_material *m, slot_use uses[SLOT_COUNT], int n) {
+    const float *sheen = m->sheen_color.value;
+    bool clearcoat = m->layers & KILN_LAYER_CLEARCOAT && m->clearcoat.value > 0;
+    bool has_sheen = m->layers & KILN_LAYER_SHEEN && (sheen[0] > 0 || sheen[1] > 0 || sheen[2] > 0);
+    bool film = m->layers & KILN_LAYER_IRIDESCENCE && m->iridescence.value > 0;
+#define USE1(asked, slot, parameter) \
+    if ((asked) && (parameter).texture.image && (parameter).value != 0) \
+        uses[n++] = (slot_use){slot, &(parameter).texture, NULL};
+#define USE3(asked, slot, parameter) \
+    if ((asked) && (parameter).texture.image) uses[n++] = (slot_use){slot, &(parameter).texture, (parameter).value};
+    USE1(clearcoat, SLOT_CLEARCOAT, m->clearcoat)
+    USE1(clearcoat, SLOT_CLEARCOAT_ROUGHNESS, m->clearcoat_roughness)
+    USE1(clearcoat, SLOT_CLEARCOAT_NORMAL, m->clearcoat_normal)
+    USE3(has_sheen, SLOT_SHEEN_COLOR, m->sheen_color)
+    USE1(has_sheen, SLOT_SHEEN_ROUGHNESS, m->sheen_roughness)
+    USE1(m->layers & KILN_LAYER_ANISOTROPY, SLOT_ANISOTROPY, m->anisotropy)
+    USE1(film, SLOT_FILM, m->iridescence)
+    if (film && m->iridescence_thickness_texture.image)
+        uses[n++] = (slot_use){SLOT_FILM_THICKNESS, &m->iridescence_thickness_texture, NULL};
+    USE1(passes_diffusely(m), SLOT_DIFFUSE_TRANSMISSION, m->diffuse_transmission)
+    USE3(passes_diffusely(m), SLOT_DIFFUSE_TRANSMISSION_COLOR, m->diffuse_transmission_color)
+#undef USE1
+#undef USE3
+    return n;
 }
 
 /* The textures that this material will be asked for. A factor of 0 makes its texture irrelevant. */
@@ -50,6 +80,7 @@ static int list_slots(const kiln_material *m, slot_use uses[SLOT_COUNT]) {
     if (m->specular_color.texture.image && m->specular.value > 0)
         USE(SLOT_SPECULAR_COLOR, &m->specular_color.texture, m->specular_color.value);
     if (transmits(m) && m->transmission.texture.image) USE(SLOT_TRANSMISSION, &m->transmission.texture, NULL);
+    n = list_layer_slots(m, uses, n);
 #undef USE
     return n;
 }
@@ -111,6 +142,30 @@ static bool add_texture(builder *b, const kiln_material *m, const slot_use *use,
     return true;
 }
 
+/* What lies on the surface, where there is any of it. */
+static void set_layers(const builder *b, world_material *m, const kiln_material *from) {
+    uint32_t layers = from->layers & KILN_LAYER_UNLIT ? 0 : from->layers;
+    if (layers & KILN_LAYER_CLEARCOAT) m->clearcoat = from->clearcoat.value;
+    m->clearcoat_roughness = from->clearcoat_roughness.value;
+    m->clearcoat_normal_scale = from->clearcoat_normal.value;
+    if (layers & KILN_LAYER_SHEEN)
+        v3_store(m->sheen, decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->sheen_color.value));
+    m->sheen_roughness = from->sheen_roughness.value;
+    if (layers & KILN_LAYER_ANISOTROPY) m->anisotropy = from->anisotropy.value;
+    m->anisotropy_x = cosf(from->anisotropy_rotation);
+    m->anisotropy_y = sinf(from->anisotropy_rotation);
+    if (layers & KILN_LAYER_IRIDESCENCE) m->film = from->iridescence.value;
+    m->film_ior = from->iridescence_ior;
+    memcpy(m->film_thickness, from->iridescence_thickness, sizeof m->film_thickness);
+    if (layers & KILN_LAYER_DIFFUSE_TRANSMISSION) m->diffuse_transmission = from->diffuse_transmission.value;
+    v3_store(m->diffuse_transmission_color,
+             decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->diffuse_transmission_color.value));
+}
+static bool is_layered(const world_material *m) {
+    return m->clearcoat > 0 || v3_max(v3_load(m->sheen)) > 0 || m->anisotropy > 0 || m->film > 0 ||
+           m->diffuse_transmission > 0;
+}
+
 static void set_constants(const builder *b, world_material *m, const kiln_material *from) {
     bool unlit = from->layers & KILN_LAYER_UNLIT;
     vec3 base = decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->base_color.value);
@@ -120,7 +175,8 @@ static void set_constants(const builder *b, world_material *m, const kiln_materi
     v3_store(m->specular_color, decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->specular_color.value));
     m->opacity = from->opacity.value;
     m->metallic = from->metallic.value;
-    m->roughness = from->roughness.value;
+    bool glossy = from->layers & KILN_LAYER_GLOSSINESS, textured = from->roughness.texture.image && from->roughness.value > 0;
+    m->roughness = glossy && !textured ? 1.0f - from->roughness.value : from->roughness.value;
     m->normal_scale = from->normal.value;
     m->specular = unlit ? 0.0f : from->specular.value;
     m->transmission = transmits(from) && !unlit ? from->transmission.value : 0.0f;
@@ -129,11 +185,17 @@ static void set_constants(const builder *b, world_material *m, const kiln_materi
     m->eta = from->ior > 0 ? fminf(from->ior, WORLD_IOR_MAX) : WORLD_IOR_MAX; /* 0 stands for infinity */
     float root = (m->eta - 1.0f) / (m->eta + 1.0f);
     m->f0 = from->ior > 0 ? root * root : 1.0f;
+    set_layers(b, m, from);
+    bool crosses = m->transmission > 0 || m->diffuse_transmission > 0;
     m->flags = (from->double_sided ? MATERIAL_DOUBLE_SIDED : 0u) | (unlit ? MATERIAL_UNLIT : 0u) |
+               (crosses ? MATERIAL_TRANSMITS : 0u) | (from->layers & KILN_LAYER_GLOSSINESS ? MATERIAL_GLOSSINESS : 0u) |
                (from->alpha_mode == KILN_ALPHA_MASK ? MATERIAL_MASK : 0u) |
                (from->alpha_mode == KILN_ALPHA_BLEND ? MATERIAL_BLEND : 0u);
     if (unlit) m->metallic = 0.0f;
-    m->kind = m->transmission > 0 ? KIND_TRANSMISSIVE : m->metallic > 0 || m->specular > 0 ? KIND_GLOSSY : KIND_DIFFUSE;
+    m->kind = is_layered(m)                              ? KIND_LAYERED
+              : m->transmission > 0                      ? KIND_TRANSMISSIVE
+              : m->metallic > 0 || m->specular > 0       ? KIND_GLOSSY
+                                                         : KIND_DIFFUSE;
 }
 
 static bool set_textures(builder *b, world_material *m, const kiln_material *from) {
@@ -145,6 +207,8 @@ static bool set_textures(builder *b, world_material *m, const kiln_material *fro
         /* The factor went into the texture's matrix. */
         float *constant = uses[i].slot == SLOT_BASE       ? m->base
                           : uses[i].slot == SLOT_EMISSION ? m->emission
+                          : uses[i].slot == SLOT_SHEEN_COLOR ? m->sheen
+                          : uses[i].slot == SLOT_DIFFUSE_TRANSMISSION_COLOR ? m->diffuse_transmission_color
                                                           : m->specular_color;
         if (uses[i].factor && b->world->textures[b->world->texture_count - 1].has_matrix)
             v3_store(constant, v3_splat(1.0f));
@@ -196,7 +260,8 @@ static bool build(builder *b, const bool *used, uint32_t threads) {
         if (!set_textures(b, m, from)) return false;
         w->kinds |= 1u << m->kind;
         w->flags |= m->flags;
-        w->single_sided |= !(m->flags & MATERIAL_DOUBLE_SIDED) && m->kind != KIND_TRANSMISSIVE;
+        w->single_sided |= !(m->flags & MATERIAL_TWO_SIDED);
+        w->wants_tangents |= material_uses_tangents(m);
     }
     memcpy(w->uv_sets, b->uv_sets, sizeof w->uv_sets);
     w->uv_set_count = b->uv_set_count;

@@ -47,18 +47,23 @@ typedef struct world_objects {
 
 typedef enum material_slot {
     SLOT_BASE, SLOT_METALLIC, SLOT_ROUGHNESS, SLOT_NORMAL, SLOT_EMISSION, SLOT_SPECULAR, SLOT_SPECULAR_COLOR,
-    SLOT_TRANSMISSION, SLOT_OPACITY, SLOT_COUNT
+    SLOT_TRANSMISSION, SLOT_OPACITY, SLOT_CLEARCOAT, SLOT_CLEARCOAT_ROUGHNESS, SLOT_CLEARCOAT_NORMAL, SLOT_SHEEN_COLOR,
+    SLOT_SHEEN_ROUGHNESS, SLOT_ANISOTROPY, SLOT_FILM, SLOT_FILM_THICKNESS, SLOT_DIFFUSE_TRANSMISSION,
+    SLOT_DIFFUSE_TRANSMISSION_COLOR, SLOT_COUNT
 } material_slot;
 
 enum {
     MATERIAL_DOUBLE_SIDED = 1 << 0,
     MATERIAL_MASK = 1 << 1,
     MATERIAL_BLEND = 1 << 2,
-    MATERIAL_UNLIT = 1 << 3
+    MATERIAL_UNLIT = 1 << 3,
+    MATERIAL_TRANSMITS = 1 << 4, /* light crosses: the surface has two sides, whatever DOUBLE_SIDED says */
+    MATERIAL_GLOSSINESS = 1 << 5, /* its roughness texture and factor say 1 − roughness */
+    MATERIAL_TWO_SIDED = MATERIAL_DOUBLE_SIDED | MATERIAL_TRANSMITS
 };
 
-/* What the shading of a material can need: the kernels' instances. */
-typedef enum material_kind { KIND_DIFFUSE, KIND_GLOSSY, KIND_TRANSMISSIVE,
+/* What the shading of a material can need: the kernels' instances. LAYERED has everything. */
+typedef enum material_kind { KIND_DIFFUSE, KIND_GLOSSY, KIND_TRANSMISSIVE, KIND_LAYERED,
                KIND_MEDIUM, /* of points in media that scatter: no material */ KIND_COUNT } material_kind;
 
 typedef struct world_material {
@@ -66,6 +71,11 @@ typedef struct world_material {
     float emission[3];
     float f0, eta, specular, specular_color[3], transmission, thin;
     float alpha_cutoff;
+    float clearcoat, clearcoat_roughness, clearcoat_normal_scale;
+    float sheen[3], sheen_roughness;
+    float anisotropy, anisotropy_x, anisotropy_y;  /* strength; direction from the tangent */
+    float film, film_ior, film_thickness[2];       /* nanometres, where a texture says 0 and 1; without one [1] */
+    float diffuse_transmission, diffuse_transmission_color[3];
     uint32_t medium;           /* behind the surface: into world.media; 0: none */
     uint32_t texture[SLOT_COUNT];        /* 1 + index into world.textures; 0: none */
     uint32_t flags;
@@ -83,6 +93,10 @@ typedef struct world_medium {
     float spread; /* (ior − 1)/V, V the Abbe number; 0: the index is that at all wavelengths */
 } world_medium;
 
+static inline bool material_uses_tangents(const world_material *m) {
+    return m->texture[SLOT_NORMAL] || m->texture[SLOT_CLEARCOAT_NORMAL] || m->anisotropy > 0;
+}
+
 struct accel;
 
 typedef struct world {
@@ -92,7 +106,7 @@ typedef struct world {
     float radius; /* of the scene around the origin, render space */
 
     world_vertex *vertices;
-    float *tangents;               /* 4 a vertex; NULL: nothing is normal-mapped */
+    float *tangents;               /* 4 a vertex; NULL: no material asks for them */
     float *colors;                 /* 4 a vertex; NULL: no vertex colours */
     float *uvs[WORLD_UV_SETS]; /* UV sets after the first, which the vertex holds: uvs[k], 2 a vertex */
     uint32_t vertex_count, triangle_count;
@@ -119,6 +133,7 @@ typedef struct world {
     uint32_t slots;      /* bits of material_slot that some material has a texture in */
     uint32_t kinds;      /* bits of material_kind that occur */
     uint32_t flags;      /* union of the materials' flags that occur */
+    bool wants_tangents; /* a normal map, or anisotropy */
     bool single_sided;   /* some surface is culled from behind */
     world_medium *media; /* [0] is air; the higher number is there where media overlap */
     uint32_t media_count;

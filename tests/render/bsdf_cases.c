@@ -3,45 +3,90 @@
 #include <math.h>
 
 #include "base/fmath.h"
+#include "render/path/surface.h"
 
-enum { D = 0, G = BSDF_GLOSSY, T = BSDF_GLOSSY | BSDF_TRANSMISSIVE };
+enum { D = 0, G = BSDF_GLOSSY, T = BSDF_GLOSSY | BSDF_TRANSMISSIVE, L = T | BSDF_LAYERED };
 #define WHITE {1, 1, 1}
 #define BLACK {0, 0, 0}
 #define GOLD {1.0f, 0.71f, 0.29f}
 #define BROWN {0.5f, 0.3f, 0.1f}
 
+#define NO_LAYERS .clearcoat = 0
+#define ALL_LAYERS                                                                                                     \
+    .clearcoat = 0.7f, .clearcoat_roughness = 0.3f, .sheen = GOLD, .sheen_roughness = 0.4f, .anisotropy = 0.5f,        \
+    .film = 0.5f, .film_ior = 1.4f, .film_thickness = 350, .pass = 0.5f, .pass_color = BROWN
+
 /* name, mask, metallic, specular, ior, transmission, thin, inside, white, base, specular colour */
 const bsdf_case bsdf_cases[] = {
-    {"lambert", D, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE},
-    {"brown lambert", D, 0, 0, 1.5f, 0, 1, 0, 0, BROWN, WHITE},
-    {"metal", G, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE},
-    {"gold", G, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE},
-    {"black metal", G, 1, 1, 1.5f, 0, 1, 0, 0, BLACK, WHITE},
-    {"coat 1.0", G, 0, 1, 1.0f, 0, 1, 0, 1, WHITE, WHITE},
-    {"coat 1.33", G, 0, 1, 1.33f, 0, 1, 0, 1, WHITE, WHITE},
-    {"coat 1.5", G, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE},
-    {"coat 2.5", G, 0, 1, 2.5f, 0, 1, 0, 1, WHITE, WHITE},
-    {"coat infinite", G, 0, 1, 0, 0, 1, 0, 1, WHITE, WHITE},
-    {"brown coat 1.5", G, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE},
-    {"tinted half coat", G, 0, 0.5f, 1.8f, 0, 1, 0, 1, WHITE, GOLD},
-    {"half metal", G, 0.5f, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE},
-    {"thin wall", T, 0, 1, 1.5f, 1, 1, 0, 1, WHITE, WHITE},
-    {"gold thin wall", T, 0, 1, 1.5f, 1, 1, 0, 0, GOLD, WHITE},
-    {"glass 1.0", T, 0, 1, 1.0f, 1, 0, 0, 1, WHITE, WHITE},
-    {"glass 1.05 in", T, 0, 1, 1.05f, 1, 0, 1, 1, WHITE, WHITE},
-    {"glass 1.05", T, 0, 1, 1.05f, 1, 0, 0, 1, WHITE, WHITE},
-    {"glass 1.33", T, 0, 1, 1.33f, 1, 0, 0, 1, WHITE, WHITE},
-    {"glass 1.33 in", T, 0, 1, 1.33f, 1, 0, 1, 1, WHITE, WHITE},
-    {"glass 1.5", T, 0, 1, 1.5f, 1, 0, 0, 1, WHITE, WHITE},
-    {"glass 1.5 in", T, 0, 1, 1.5f, 1, 0, 1, 1, WHITE, WHITE},
-    {"glass 2.4", T, 0, 1, 2.4f, 1, 0, 0, 1, WHITE, WHITE},
-    {"glass 2.4 in", T, 0, 1, 2.4f, 1, 0, 1, 1, WHITE, WHITE},
-    {"brown glass 1.5", T, 0, 1, 1.5f, 1, 0, 0, 0, BROWN, WHITE},
-    {"half glass 1.5", T, 0, 1, 1.5f, 0.5f, 0, 0, 1, WHITE, WHITE},
-    {"half thin wall", T, 0, 1, 1.5f, 0.5f, 1, 0, 1, WHITE, WHITE},
-    {"everything", T, 0.3f, 0.8f, 1.6f, 0.6f, 0, 0, 0, GOLD, GOLD},
-    {"everything in", T, 0.3f, 0.8f, 1.6f, 0.6f, 0, 1, 0, GOLD, GOLD},
+    {"lambert", D, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"brown lambert", D, 0, 0, 1.5f, 0, 1, 0, 0, BROWN, WHITE, NO_LAYERS},
+    {"metal", G, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"gold", G, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, NO_LAYERS},
+    {"black metal", G, 1, 1, 1.5f, 0, 1, 0, 0, BLACK, WHITE, NO_LAYERS},
+    {"coat 1.0", G, 0, 1, 1.0f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"coat 1.33", G, 0, 1, 1.33f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"coat 1.5", G, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"coat 2.5", G, 0, 1, 2.5f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"coat infinite", G, 0, 1, 0, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"brown coat 1.5", G, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, NO_LAYERS},
+    {"tinted half coat", G, 0, 0.5f, 1.8f, 0, 1, 0, 1, WHITE, GOLD, NO_LAYERS},
+    {"half metal", G, 0.5f, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"thin wall", T, 0, 1, 1.5f, 1, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"gold thin wall", T, 0, 1, 1.5f, 1, 1, 0, 0, GOLD, WHITE, NO_LAYERS},
+    {"glass 1.0", T, 0, 1, 1.0f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"glass 1.05 in", T, 0, 1, 1.05f, 1, 0, 1, 1, WHITE, WHITE, NO_LAYERS},
+    {"glass 1.05", T, 0, 1, 1.05f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"glass 1.33", T, 0, 1, 1.33f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"glass 1.33 in", T, 0, 1, 1.33f, 1, 0, 1, 1, WHITE, WHITE, NO_LAYERS},
+    {"glass 1.5", T, 0, 1, 1.5f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"glass 1.5 in", T, 0, 1, 1.5f, 1, 0, 1, 1, WHITE, WHITE, NO_LAYERS},
+    {"glass 2.4", T, 0, 1, 2.4f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"glass 2.4 in", T, 0, 1, 2.4f, 1, 0, 1, 1, WHITE, WHITE, NO_LAYERS},
+    {"brown glass 1.5", T, 0, 1, 1.5f, 1, 0, 0, 0, BROWN, WHITE, NO_LAYERS},
+    {"half glass 1.5", T, 0, 1, 1.5f, 0.5f, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"half thin wall", T, 0, 1, 1.5f, 0.5f, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"everything", T, 0.3f, 0.8f, 1.6f, 0.6f, 0, 0, 0, GOLD, GOLD, NO_LAYERS},
+    {"everything in", T, 0.3f, 0.8f, 1.6f, 0.6f, 0, 1, 0, GOLD, GOLD, NO_LAYERS},
+    {"no layer", L, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"clearcoat on lambert", L, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1},
+    {"rough clearcoat on lambert", L, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.5f},
+    {"clearcoat on plastic", L, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.1f,
+     .off_white = 0.02f},
+    {"half a clearcoat on metal", L, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 0.5f, .off_white = 0.03f},
+    {"clearcoat on gold", L, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.3f},
+    {"tilted clearcoat", L, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.6f,
+     .clearcoat_tilt = 0.3f},
+    {"clearcoat on glass", L, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.2f},
+    {"clearcoat on glass, in", L, 0, 1, 1.5f, 1, 0, 1, 0, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.2f},
+    {"clearcoat on black", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.02f},
+    {"sheen on lambert", L, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .sheen = WHITE, .sheen_roughness = 0.5f, .off_white = 0.02f},
+    {"narrow sheen on plastic", L, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .sheen = GOLD, .sheen_roughness = 0.1f},
+    {"sheen on black", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .sheen = GOLD, .sheen_roughness = 1},
+    {"sheen of no roughness", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .sheen = WHITE, .sheen_roughness = 0},
+    {"half anisotropic metal", L, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 0.5f, .off_white = 0.1f},
+    {"anisotropic metal", L, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 1, .off_white = 0.3f},
+    {"anisotropic plastic", L, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .anisotropy = 0.7f},
+    {"anisotropic glass", L, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .anisotropy = 0.6f},
+    {"anisotropic thin wall", L, 0, 1, 1.5f, 1, 1, 0, 0, WHITE, WHITE, .anisotropy = 0.6f},
+    {"film on metal", L, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, .film = 1, .film_ior = 1.8f, .film_thickness = 400},
+    {"film on plastic", L, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 300,
+     .off_white = 0.15f},
+    {"film of no thickness", L, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .film = 1, .film_ior = 1.3f},
+    {"film on glass", L, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 500},
+    {"film on glass, in", L, 0, 1, 1.5f, 1, 0, 1, 0, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 500},
+    {"soap film", L, 0, 1, 1.0f, 1, 1, 0, 0, WHITE, WHITE, .film = 0.7f, .film_ior = 1.33f, .film_thickness = 800},
+    {"leaf", L, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .pass = 0.5f, .pass_color = WHITE},
+    {"red lampshade", L, 0, 0, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .pass = 1, .pass_color = GOLD},
+    {"wax", L, 0, 1, 1.4f, 0, 0, 0, 1, WHITE, WHITE, .pass = 0.8f, .pass_color = WHITE},
+    {"wax, in, under clearcoat", L, 0, 1, 1.4f, 0, 0, 1, 0, WHITE, WHITE, .pass = 0.8f, .pass_color = WHITE, .clearcoat = 1},
+    {"wax under clearcoat", L, 0, 1, 1.4f, 0, 0, 0, 0, WHITE, WHITE, .pass = 0.8f, .pass_color = WHITE, .clearcoat = 1},
+    {"all layers", L, 0.3f, 0.8f, 1.6f, 0.3f, 0, 0, 0, GOLD, GOLD, ALL_LAYERS},
+    {"all layers, in", L, 0.3f, 0.8f, 1.6f, 0.3f, 0, 1, 0, GOLD, GOLD, ALL_LAYERS},
 };
+
+const char *const bsdf_case_of_DIFFUSE = "lambert", *const bsdf_case_of_BELOW = "leaf",
+                  *const bsdf_case_of_REFLECTION = "metal", *const bsdf_case_of_TRANSMISSION = "glass 1.5",
+                  *const bsdf_case_of_CLEARCOAT = "clearcoat on black", *const bsdf_case_of_SHEEN = "sheen on black";
 const size_t bsdf_case_count = sizeof bsdf_cases / sizeof *bsdf_cases;
 
 /* As render/world/materials.c and the material stage do. */
@@ -50,16 +95,24 @@ void subject_make(subject *to, const bsdf_case *c) {
     to->row = c;
     to->surface = (surface){.base = c->base, .metallic = c->metallic, .specular = c->specular,
                             .specular_color = c->specular_color, .f0 = c->ior > 0 ? root * root : 1.0f,
-                            .transmission = c->transmission, .through = c->base, .eta = eta, .thin = c->thin ? 1.0f : 0.0f};
+                            .transmission = c->transmission, .through = c->base, .eta = eta, .thin = c->thin ? 1.0f : 0.0f,
+                            .near = c->thin || !c->inside ? 1.0f : 0.0f, .far = c->thin || c->inside ? 1.0f : 0.0f,
+                            .anisotropy = c->anisotropy, .film = c->film, .film_ior = fmaxf(c->film_ior, 1),
+                            .film_thickness = c->film_thickness, .clearcoat = c->clearcoat,
+                            .clearcoat_roughness = c->clearcoat_roughness,
+                            .clearcoat_normal = v3(sinf(c->clearcoat_tilt), 0, cosf(c->clearcoat_tilt)),
+                            .sheen = c->sheen, .sheen_roughness = c->sheen_roughness,
+                            .diffuse_transmission = c->pass, .diffuse_transmission_color = c->pass_color};
 }
 
 static bsdf make(unsigned mask, const surface *s, vec3 wo) {
-    return mask == D ? bsdf_make(D, s, wo) : mask == G ? bsdf_make(G, s, wo) : bsdf_make(T, s, wo);
+    return mask == D ? bsdf_make(D, s, wo) : mask == G ? bsdf_make(G, s, wo) : mask == T ? bsdf_make(T, s, wo) : bsdf_make(L, s, wo);
 }
 
 probe probe_make(const subject *from, float roughness, vec3 wo) {
     probe p = {.mask = from->row->mask, .surface = from->surface};
     p.surface.roughness = roughness;
+    p.surface.clearcoat_normal = surface_face(p.surface.clearcoat_normal, wo);
     p.bsdf = make(p.mask, &p.surface, wo);
     return p;
 }
@@ -68,6 +121,8 @@ probe probe_reverse(const probe *from, vec3 wi) {
     probe p = *from;
     if (wi.z < 0 && p.surface.thin < 0.5f) {
         p.surface.eta = 1 / p.surface.eta;
+        p.surface.near = from->surface.far;
+        p.surface.far = from->surface.near;
     }
     p.bsdf = make(p.mask, &p.surface, v3(wi.x, wi.y, fabsf(wi.z)));
     return p;
@@ -76,19 +131,29 @@ probe probe_reverse(const probe *from, vec3 wi) {
 bsdf_value probe_evaluate(const probe *p, vec3 wi) {
     return p->mask == D   ? bsdf_evaluate(D, &p->bsdf, wi)
            : p->mask == G ? bsdf_evaluate(G, &p->bsdf, wi)
-                          : bsdf_evaluate(T, &p->bsdf, wi);
+           : p->mask == T ? bsdf_evaluate(T, &p->bsdf, wi)
+                          : bsdf_evaluate(L, &p->bsdf, wi);
 }
 
 bsdf_sampled probe_sample(const probe *p, float lobe, vec2 direction) {
     return p->mask == D   ? bsdf_sample(D, &p->bsdf, lobe, direction)
            : p->mask == G ? bsdf_sample(G, &p->bsdf, lobe, direction)
-                          : bsdf_sample(T, &p->bsdf, lobe, direction);
+           : p->mask == T ? bsdf_sample(T, &p->bsdf, lobe, direction)
+                          : bsdf_sample(L, &p->bsdf, lobe, direction);
 }
 
 vec3 probe_albedo(const probe *p) {
     return p->mask == D   ? bsdf_albedo(D, &p->bsdf)
            : p->mask == G ? bsdf_albedo(G, &p->bsdf)
-                          : bsdf_albedo(T, &p->bsdf);
+           : p->mask == T ? bsdf_albedo(T, &p->bsdf)
+                          : bsdf_albedo(L, &p->bsdf);
+}
+
+float probe_narrowest(const probe *p) {
+    float coat = p->bsdf.clearcoat.alpha, narrowest = 1;
+    if (p->mask && !bsdf_is_mirror(p->bsdf.alphas.x)) narrowest = p->bsdf.alphas.y;
+    if (p->mask & BSDF_LAYERED && p->bsdf.clearcoat.near > 0 && !bsdf_is_mirror(coat)) narrowest = fminf(narrowest, coat);
+    return narrowest;
 }
 
 vec3 direction_at(double cosine, double turns) {

@@ -15,10 +15,24 @@ typedef struct bsdf_case {
     bool thin, inside;
     bool white; /* nothing is absorbed: what comes in goes out */
     vec3 base, specular_color;
+    /* Layers. */
+    float clearcoat, clearcoat_roughness, clearcoat_tilt; /* tilt: of its normal, radians */
+    vec3 sheen;
+    float sheen_roughness;
+    float anisotropy;
+    float film, film_ior, film_thickness;
+    float pass; /* diffuse transmission */
+    vec3 pass_color;
+    float off_white; /* what compensation may miss, beside what tables do */
 } bsdf_case;
 
 extern const bsdf_case bsdf_cases[];
 extern const size_t bsdf_case_count;
+
+/* A case for every lobe, by name: a lobe without one does not link. */
+#define BSDF_CASE_OF_LOBE(id, text) extern const char *const bsdf_case_of_##id;
+BSDF_LOBES(BSDF_CASE_OF_LOBE)
+#undef BSDF_CASE_OF_LOBE
 
 typedef struct subject {
     const bsdf_case *row;
@@ -40,6 +54,9 @@ probe probe_reverse(const probe *, vec3 wi);
 bsdf_value probe_evaluate(const probe *, vec3 wi);
 bsdf_sampled probe_sample(const probe *, float lobe, vec2 direction);
 vec3 probe_albedo(const probe *);
+
+/* The narrowest lobe that has a density: its alpha; 1 where there is none. */
+float probe_narrowest(const probe *);
 
 /* Radiance that crosses into the far side is squeezed by this: η² for a solid, else 1. */
 static inline double probe_squeeze(const probe *p) {

@@ -79,7 +79,7 @@ static surface_triangle fetch(const world *w, const ray_crossing *c) {
 
 static bool is_culled(const world *w, const path *p, const ray_crossing *c) {
     const world_material *m = &w->materials[w->triangle_material[c->triangle]];
-    bool one_sided = !(m->flags & MATERIAL_DOUBLE_SIDED) && m->kind != KIND_TRANSMISSIVE;
+    bool one_sided = !(m->flags & MATERIAL_TWO_SIDED);
     return one_sided && v3_dot(lookup_facing(w, c->triangle, c->instance), p->direction) > 0.0f;
 }
 
@@ -185,13 +185,63 @@ static void mix4(const world *w, const hit *h, const float *values, float out[4]
                  b2 * values[4 * (size_t)i[2] + (size_t)k];
 }
 
-/* Material constants times textures; the mapped normal. */
-static surface look_up(const path_context *c, hit *h, vec3 *emission, vec3 *normal) {
-    h->bumpy = 0;
+/* The tangent in render space; w its handedness. 0: there is none. */
+static vec3 tangent_of(const world *w, const hit *h, float *sign) {
+    float tangent[4];
+    *sign = 0;
+    if (!w->tangents) return v3(0, 0, 0);
+    mix4(w, h, w->tangents, tangent);
+    const world_instance *copy = &w->instances[h->instance];
+    *sign = w->tangents[4 * (size_t)w->triangles[3 * (size_t)h->triangle] + 3] * copy->side;
+    return h->instance ? world_instance_vector(copy, v3_load(tangent)) : v3_load(tangent);
+}
+
+static vec3 map_of(texel x, float scale) {
+    return v3((2.0f * x.r - 1.0f) * scale, (2.0f * x.g - 1.0f) * scale, 2.0f * x.b - 1.0f);
+}
+
+static void start_layers(surface *s, const world_material *m, const hit *h, vec2 *along) {
+    bool both = m->thin > 0.5f, front = h->p.front > 0.5f;
+    s->near = both || front ? 1.0f : 0.0f, s->far = both || !front ? 1.0f : 0.0f;
+    s->anisotropy = m->anisotropy;
+    *along = (vec2){m->anisotropy_x, m->anisotropy_y};
+    s->film = m->film, s->film_ior = m->film_ior, s->film_thickness = m->film_thickness[1];
+    s->clearcoat = m->clearcoat, s->clearcoat_roughness = m->clearcoat_roughness;
+    s->sheen = v3_load(m->sheen), s->sheen_roughness = m->sheen_roughness;
+    s->diffuse_transmission = m->diffuse_transmission;
+    s->diffuse_transmission_color = v3_load(m->diffuse_transmission_color);
+}
+
+/* What a texture does to the layers. */
+static void apply_layer(surface *s, const world_material *m, int slot, texel x, float one, vec2 *along, vec3 *coat) {
+    vec3 rgb = {x.r, x.g, x.b};
+    float u = 2.0f * x.r - 1.0f, v = 2.0f * x.g - 1.0f;
+    if (slot == SLOT_CLEARCOAT) s->clearcoat *= one;
+    if (slot == SLOT_CLEARCOAT_ROUGHNESS) s->clearcoat_roughness *= one;
+    if (slot == SLOT_CLEARCOAT_NORMAL) *coat = map_of(x, m->clearcoat_normal_scale);
+    if (slot == SLOT_SHEEN_COLOR) s->sheen = v3_mul(s->sheen, rgb);
+    if (slot == SLOT_SHEEN_ROUGHNESS) s->sheen_roughness *= one;
+    if (slot == SLOT_ANISOTROPY) {
+        s->anisotropy *= x.b;
+        *along = (vec2){u * m->anisotropy_x - v * m->anisotropy_y, u * m->anisotropy_y + v * m->anisotropy_x};
+    }
+    if (slot == SLOT_FILM) s->film *= one;
+    if (slot == SLOT_FILM_THICKNESS) s->film_thickness = fm_lerp(m->film_thickness[0], m->film_thickness[1], one);
+    if (slot == SLOT_DIFFUSE_TRANSMISSION) s->diffuse_transmission *= one;
+    if (slot == SLOT_DIFFUSE_TRANSMISSION_COLOR)
+        s->diffuse_transmission_color = v3_mul(s->diffuse_transmission_color, rgb);
+}
+
+/* Material constants times textures; the mapped normal, facing wo. */
+static surface look_up(const path_context *c, hit *h, vec3 wo, vec3 *emission, vec3 *normal) {
     const world *w = c->world;
     const world_material *m = h->material;
-    surface s = {v3_load(m->base), m->metallic, m->roughness, m->specular, v3_load(m->specular_color), m->f0,
-                 m->transmission, v3_splat(1), m->eta, m->thin};
+    surface s = {.base = v3_load(m->base), .metallic = m->metallic, .roughness = m->roughness, .specular = m->specular,
+                 .specular_color = v3_load(m->specular_color), .f0 = m->f0, .transmission = m->transmission,
+                 .through = v3_splat(1), .eta = m->eta, .thin = m->thin};
+    vec2 along;
+    vec3 map = {0, 0, 0}, coat = {0, 0, 0};
+    start_layers(&s, m, h, &along);
     *emission = v3_load(m->emission);
     if (w->colors) {
         float tint[4];
@@ -211,20 +261,19 @@ static surface look_up(const path_context *c, hit *h, vec3 *emission, vec3 *norm
         if (slot == SLOT_EMISSION) *emission = v3_mul(*emission, rgb);
         if (slot == SLOT_SPECULAR_COLOR) s.specular_color = v3_mul(s.specular_color, rgb);
         if (slot == SLOT_METALLIC) s.metallic *= one;
-        if (slot == SLOT_ROUGHNESS) s.roughness *= one;
+        if (slot == SLOT_ROUGHNESS) s.roughness = m->flags & MATERIAL_GLOSSINESS ? 1.0f - s.roughness * one : s.roughness * one;
         if (slot == SLOT_SPECULAR) s.specular *= one;
         if (slot == SLOT_TRANSMISSION) s.transmission *= one;
-        if (slot != SLOT_NORMAL) continue;
-        float tangent[4];
-        mix4(w, h, w->tangents, tangent);
-        const world_instance *copy = &w->instances[h->instance];
-        vec3 direction = v3_load(tangent);
-        if (h->instance) direction = world_instance_vector(copy, direction);
-        float sign = w->tangents[4 * (size_t)w->triangles[3 * (size_t)h->triangle] + 3] * copy->side;
-        vec3 map = {(2.0f * x.r - 1.0f) * m->normal_scale, (2.0f * x.g - 1.0f) * m->normal_scale, 2.0f * x.b - 1.0f};
-        h->bumpy = map.x != 0.0f || map.y != 0.0f;
-        *normal = surface_map(*normal, direction, sign, map, h->p.front);
+        if (slot == SLOT_NORMAL) map = map_of(x, m->normal_scale);
+        apply_layer(&s, m, slot, x, one, &along, &coat);
     }
+    bool coated = m->kind == KIND_LAYERED && w->slots & 1u << SLOT_CLEARCOAT_NORMAL;
+    h->bumpy = map.x != 0.0f || map.y != 0.0f || coated;
+    float sign;
+    vec3 tangent = tangent_of(w, h, &sign);
+    s.clearcoat_normal = surface_face(surface_map(*normal, tangent, sign, coat, h->p.front), wo);
+    *normal = surface_face(surface_map(*normal, tangent, sign, map, h->p.front), wo);
+    s.along = surface_along(*normal, tangent, sign, along.x, along.y, h->p.front);
     return s;
 }
 
@@ -250,6 +299,7 @@ static void bound(const path_context *c, const path *p, const hit *h, surface *s
         s->base = s->through = v3_splat(1);
         s->metallic = s->roughness = s->f0 = 0;
         s->transmission = 1;
+        s->near = s->far = s->anisotropy = s->film = s->diffuse_transmission = 0;
         return;
     }
     s->through = s->base;
@@ -262,7 +312,7 @@ static void bound(const path_context *c, const path *p, const hit *h, surface *s
 static void emit(const path_context *c, path *p, const hit *h, vec3 emission) {
     const world *w = c->world;
     const world_material *m = h->material;
-    bool shines = h->p.front > 0.5f || m->flags & MATERIAL_DOUBLE_SIDED || m->kind == KIND_TRANSMISSIVE;
+    bool shines = h->p.front > 0.5f || m->flags & MATERIAL_TWO_SIDED;
     if (!shines) return;
     uint32_t number = w->triangle_light ? w->triangle_light[h->triangle] : LIGHT_NONE;
     float probability = number == LIGHT_NONE ? 0.0f : chosen_probability(c, w->instances[h->instance].light_base + number);
@@ -274,7 +324,10 @@ static void emit(const path_context *c, path *p, const hit *h, vec3 emission) {
 }
 
 static unsigned mask_of(material_kind kind) {
-    return kind == KIND_DIFFUSE ? SHADING_MASK_DIFFUSE : kind == KIND_GLOSSY ? SHADING_MASK_GLOSSY : SHADING_MASK_TRANSMISSIVE;
+    return kind == KIND_DIFFUSE        ? SHADING_MASK_DIFFUSE
+           : kind == KIND_GLOSSY       ? SHADING_MASK_GLOSSY
+           : kind == KIND_TRANSMISSIVE ? SHADING_MASK_TRANSMISSIVE
+                                       : SHADING_MASK_LAYERED;
 }
 
 /* A light, a point on it, and the density of both. */
@@ -392,9 +445,8 @@ static shading arrive(const path_context *c, path *p, hit *h) {
     if (c->world->absorbs)
         p->throughput = v3_mul(p->throughput, medium_transmittance(c->world->absorption, medium_top(p->media), h->p.hit.t));
     vec3 wo = v3_neg(p->direction), normal = h->p.shading, emission;
-    surface s = look_up(c, h, &emission, &normal);
+    surface s = look_up(c, h, wo, &emission, &normal);
     bound(c, p, h, &s);
-    normal = surface_face(normal, wo);
     if (c->world->emits) emit(c, p, h, emission);
     return shading_make(mask_of(h->material->kind), &s, h->p.position, h->p.geometric, normal, h->p.reach, wo);
 }

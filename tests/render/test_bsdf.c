@@ -73,13 +73,16 @@ static bool is_absorbed(const setting *s, const bsdf_sampled *r) {
 }
 
 enum { SAMPLES = 4000 };
-/* What midpoints and single precision leave of an integral: relative to 1 for probabilities, to the value for values. */
-#define QUADRATURE 3e-3
+/* What midpoints and single precision leave of an integral: relative to 1 for probabilities, to the value for values. A
+ * streak that is refracted close to the horizon is cut by it where few points lie. */
+#define QUADRATURE 6e-3
+#define QUADRATURE_STREAK 1.5e-2
 
 static void check_counts(setting *s, double tests) {
     chart c;
     chart_make(&c, &s->probe);
     chart_sums e = chart_integrate(&c);
+    double off_chart = c.refracts && c.stretch < 1 ? QUADRATURE_STREAK : QUADRATURE;
     dvec3 sum = d3_add(e.value[0], e.value[1]);
     double integral[3] = {sum.x, sum.y, sum.z};
     double counts[CHART_CELLS + 1] = {0}, wanted[CHART_CELLS + 1], all = 0;
@@ -95,7 +98,7 @@ static void check_counts(setting *s, double tests) {
     for (int i = 0; i < CHART_CELLS; i++) all += e.pdf[i], wanted[i] = SAMPLES * e.pdf[i];
     wanted[CHART_CELLS] = SAMPLES * fmax(1 - all, 0);
     double lost = counts[CHART_CELLS] / SAMPLES, error = sqrt(lost * (1 - lost) / SAMPLES) + 1e-9;
-    if (normal_tail(fmax(fabs(lost - (1 - all)) - QUADRATURE, 0) / error) < sidak(LEVEL, tests))
+    if (normal_tail(fmax(fabs(lost - (1 - all)) - off_chart, 0) / error) < sidak(LEVEL, tests))
         complain(s, "pdf integrates to %.5f, and %.5f come to nothing", all, lost);
     double p = chi_square_p(counts, wanted, CHART_CELLS + 1);
     if (p < sidak(LEVEL, tests)) complain(s, "sample does not follow pdf (p = %g)", p);
@@ -106,7 +109,7 @@ static void check_counts(setting *s, double tests) {
         /* Of events that are expected less than twenty times the samples tell no variance: they are Poisson's; nor of
          * the few refractions of a lobe that is hardly chosen, each of which weighs 1/(p η²). */
         double least = fmax(sqrt(fmin(integral[k], 20.0 / SAMPLES) / SAMPLES), rare), mean = means[k].mean;
-        double off = fmax(fabs(mean - integral[k]) - QUADRATURE * integral[k] - 1e-5, 0);
+        double off = fmax(fabs(mean - integral[k]) - off_chart * integral[k] - 1e-5, 0);
         if (normal_tail(off / fmax(tally_error(&means[k]), least + 1e-9)) < sidak(LEVEL, 3 * tests))
             complain(s, "the mean multiplier is %.5f ± %.5f, the integral %.5f", mean, tally_error(&means[k]), integral[k]);
     }
@@ -124,14 +127,14 @@ static void check_one_by_one(setting *s, double tests) {
     for (int n = 0; n < 200; n++) {
         bsdf_sampled r = draw(s, &s->random);
         bsdf_value v = probe_evaluate(&s->probe, r.wi);
-        if (r.delta) {
+        if (r.delta && probe_narrowest(&s->probe) > 0.01f) {
             vec3 off = v3_scale(stream_direction(&s->random), 1e-4f * fabsf(r.wi.z));
             bsdf_value beside = probe_evaluate(&s->probe, v3_normalize(v3_add(r.wi, off)));
             float difference = largest(v3_abs(v3_sub(v.value, beside.value)));
             if (r.pdf != 0 || difference > 2e-3f * largest(v.value) || fabsf(v.pdf - beside.pdf) > 2e-3f * v.pdf)
                 complain(s, "evaluate knows a delta: value %g, %g beside it; pdf %g, %g", (double)largest(v.value),
                          (double)largest(beside.value), (double)v.pdf, (double)beside.pdf);
-        } else if (!is_absorbed(s, &r)) {
+        } else if (!r.delta && !is_absorbed(s, &r)) {
             float off = largest(v3_abs(v3_sub(v3_scale(r.multiplier, r.pdf), v.value)));
             if (v.pdf != r.pdf || !(v.pdf > 0) || off > 1e-6f * largest(v.value))
                 complain(s, "multiplier · pdf misses the value by %g of %g; pdf %g, %g", (double)off,
@@ -150,7 +153,7 @@ static void multipliers_are_value_over_pdf(void **state) {
 /* f cos/pdf with directions uniform on the sphere expects what the combined multiplier does. Narrow lobes are left out:
  * hardly a direction would meet them. */
 static void check_naive_form(setting *s, double tests) {
-    if (s->probe.mask && s->roughness < 0.5f) return;
+    if (probe_narrowest(&s->probe) < 0.25f) return;
     tally naive = {0}, combined = {0};
     for (int n = 0; n < SAMPLES; n++) {
         bsdf_sampled r = draw(s, &s->random);

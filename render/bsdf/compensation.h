@@ -1,0 +1,80 @@
+/* render/bsdf/compensation.h: what microfacets reflect more than once, and the base under its coat.
+ *
+ * Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks": (1 − E(wo))(1 − E(wi)) over π (1 − mean E),
+ * reciprocal; the same form couples the base to its coat (Kelemen and Szirmay-Kalos 2001). */
+#ifndef KILN_RENDER_BSDF_COMPENSATION_H
+#define KILN_RENDER_BSDF_COMPENSATION_H
+
+#include "render/bsdf/layers.h"
+
+/* What an interface loses to multiple scattering, seen from mu; thin walls lose what a mirror would, and what goes
+ * straight on loses nothing. */
+KERNEL float bsdf_interface_loss(const bsdf *b, albedo_node ior, float mu, float full) {
+    float e = fm_lerp(albedo_interface(ior, mu, b->alpha, b->roughness), full, b->thin);
+    return (1.0f - e) * (bsdf_is_straight(b) ? 0.0f : 1.0f);
+}
+KERNEL float bsdf_interface_mean_loss(const bsdf *b, albedo_node ior, float full_mean) {
+    float e = fm_lerp(albedo_interface_mean(ior, b->roughness), full_mean, b->thin);
+    return fm_max(1.0f - e, BSDF_LEAST_LOSS);
+}
+
+/* Shares of light that a lobe over a hemisphere sends up and down. */
+typedef struct bsdf_up_down { vec3 up, down; } bsdf_up_down;
+
+KERNEL vec3 bsdf_divide(vec3 a, vec3 mean) {
+    return v3(a.x / fm_max(mean.x, BSDF_LEAST_LOSS), a.y / fm_max(mean.y, BSDF_LEAST_LOSS), a.z / fm_max(mean.z, BSDF_LEAST_LOSS));
+}
+
+/* The base under its coat, and under layers. means: NULL where there are none; through: what they let through at wo. */
+KERNEL bsdf_up_down bsdf_make_base(unsigned mask, bsdf *b, const surface *s, float opaque, float mu, float full,
+                                  float full_mean, const layers_means *means, float through) {
+    vec3 enters = v3_scale(complement(bsdf_coat_albedo(mask, b, mu, full)), opaque);
+    if (!(mask & BSDF_LAYERED)) {
+        vec3 mean = v3_madd(v3_scale(b->f0, full_mean), albedo_schlick_mean(b->roughness),
+                            v3_sub(v3_splat(b->f90), b->f0));
+        enters = v3_mul(enters, s->base);
+        b->diffuse = bsdf_divide(enters, complement(mean));
+        return (bsdf_up_down){enters, v3_splat(0.0f)};
+    }
+    enters = v3_scale(enters, through);
+    vec3 up = v3_mul(enters, v3_scale(s->base, 1.0f - s->diffuse_transmission));
+    vec3 down = v3_mul(enters, v3_scale(s->diffuse_transmission_color, s->diffuse_transmission));
+    /* From either side of a solid's boundary: the larger mean keeps what crosses symmetric and below what came. */
+    vec3 larger = v3(fm_max(means->near.x, means->far.x), fm_max(means->near.y, means->far.y),
+                     fm_max(means->near.z, means->far.z));
+    b->diffuse = bsdf_divide(up, means->near);
+    vec3 passes = bsdf_divide(down, larger);
+    /* Nothing bends here, yet radiance narrows by 1/η² as it does where it bends: a path that comes in one way and goes
+     * out the other would gain light. */
+    b->passes = v3_scale(passes, b->thin > 0.5f ? 1.0f : 1.0f / (b->eta * b->eta));
+    return (bsdf_up_down){up, v3_mul(passes, means->far)};
+}
+
+/* F_ms = F² E/(1 − F (1 − E)) of the mean Fresnel term F = (20 F0 + 1)/21 and the mean albedo E. */
+KERNEL vec3 bsdf_make_metal(unsigned mask, bsdf *b, const surface *s, float full, float full_mean,
+                            const layers_means *means, float through) {
+    vec3 f = v3_madd(v3_splat(1.0f / 21.0f), 20.0f / 21.0f, s->base), lost = v3_scale(f, 1.0f - full_mean);
+    vec3 again = v3(f.x * f.x * full_mean / (1.0f - lost.x), f.y * f.y * full_mean / (1.0f - lost.y),
+                    f.z * f.z * full_mean / (1.0f - lost.z));
+    again = v3_scale(again, s->metallic * (1.0f - full));
+    if (mask & BSDF_LAYERED) again = v3_scale(again, through);
+    b->metal_again = v3_scale(again, 1.0f / fm_max(1.0f - full_mean, BSDF_LEAST_LOSS));
+    if (mask & BSDF_LAYERED) b->metal_again = v3_scale(b->metal_again, 1.0f / fm_max(means->again, BSDF_LEAST_LOSS));
+    return again;
+}
+
+/* What the interface loses is shared out so that as much crosses from either side: (1 − κ_a) n_a² M_a is symmetric. */
+KERNEL bsdf_up_down bsdf_make_interface(unsigned mask, bsdf *b, float mu, float full, float full_mean) {
+    float loss = bsdf_interface_loss(b, b->near_ior, mu, full);
+    if (mask & BSDF_LAYERED) loss *= 1.0f - b->film.share; /* tables know no films: rather too little than too much */
+    float near_mean = bsdf_interface_mean_loss(b, b->near_ior, full_mean);
+    float far_mean = bsdf_interface_mean_loss(b, b->far_ior, full_mean);
+    float eta2 = b->thin > 0.5f ? 1.0f : b->eta * b->eta;
+    float pass = eta2 * far_mean / (near_mean + eta2 * far_mean);
+    float reflected = (1.0f - pass) * loss, passed = pass * loss;
+    b->again_near = reflected * b->interface / near_mean;
+    b->again_far = passed / (far_mean * eta2);
+    return (bsdf_up_down){v3_splat(reflected * b->interface), v3_scale(b->tint, passed)};
+}
+
+#endif

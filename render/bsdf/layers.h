@@ -1,0 +1,120 @@
+/* render/bsdf/layers.h: what lies on a surface: a clear coat, and sheen below it.
+ *
+ * A layer reflects what its directional albedo E says and lets 1 − E through on the way in and on the way out. What a
+ * layer covers is scaled by the smaller of the two, for light that is sent on in one event (KHR_materials_sheen,
+ * 'Albedo-Scaling Technique'): reciprocal, never more than came. What is spread over a hemisphere
+ * takes both as a product over its mean, which gives back what the layer sends down again (Kelemen and
+ * Szirmay-Kalos 2001). */
+#ifndef KILN_RENDER_BSDF_LAYERS_H
+#define KILN_RENDER_BSDF_LAYERS_H
+
+#include "render/bsdf/lobes/sheen.h"
+#include "render/bsdf/reflectance.h"
+
+/* KHR_materials_clearcoat: a dielectric of ior 1.5. */
+#define CLEARCOAT_F0 0.04f
+
+KERNEL float clearcoat_fresnel(float c) { return CLEARCOAT_F0 + (1.0f - CLEARCOAT_F0) * fresnel_schlick_weight(c); }
+
+/* What a coat of share 1 reflects in all, seen from a cosine to its normal. */
+KERNEL float clearcoat_albedo(const bsdf_clearcoat *l, float mu) {
+    float share = bsdf_schlick_share(mu, l->alpha, l->roughness);
+    return bsdf_full(mu, l->alpha, l->roughness) * (CLEARCOAT_F0 + (1.0f - CLEARCOAT_F0) * share);
+}
+
+/* What goes through clear coat and sheen together, along a direction on wo's side or, mirrored, on the far one. */
+typedef struct layers_pass { float clearcoat, sheen; } layers_pass;
+
+KERNEL layers_pass layers_through(const bsdf *b, float clearcoat_mu, float mu, int far) {
+    float coat = far ? b->clearcoat.far : b->clearcoat.near, sheen = far ? b->sheen.far : b->sheen.near;
+    return (layers_pass){1.0f - coat * clearcoat_albedo(&b->clearcoat, clearcoat_mu),
+                         1.0f - sheen * albedo_sheen(mu, b->sheen.node)};
+}
+KERNEL layers_pass layers_toward(const bsdf *b, vec3 wi, int far) {
+    return layers_through(b, fm_clamp(fabsf(v3_dot(wi, b->clearcoat.frame.z)), 0.0f, 1.0f), fm_min(fabsf(wi.z), 1.0f), far);
+}
+
+/* On light of one event, in along wi and out along wo. */
+KERNEL float layers_under(const bsdf *b, layers_pass in) {
+    return fm_min(in.clearcoat, b->clearcoat.through) * fm_min(in.sheen, b->sheen.through);
+}
+
+KERNEL float clearcoat_pdf(const bsdf_clearcoat *l, vec3 h) {
+    float alpha = fm_max(l->alpha, GGX_ALPHA_MIN);
+    return ggx_reflection_pdf(l->wo, h, (vec2){alpha, alpha});
+}
+
+/* f cos and density of the layers themselves, towards wi above the surface. */
+typedef struct layers_value { vec3 value; float pdf; } layers_value;
+
+KERNEL layers_value layers_evaluate(const bsdf *b, vec3 wi, layers_pass in) {
+    const bsdf_clearcoat *l = &b->clearcoat;
+    vec3 w = frame_to_local(&l->frame, wi);
+    int live = (w.z > 0.0f) & !bsdf_is_mirror(l->alpha);
+    w.z = fm_max(w.z, 0.0f);
+    vec3 h = v3_normalize(v3_add(l->wo, w));
+    float alpha = fm_max(l->alpha, GGX_ALPHA_MIN), c = v3_dot(l->wo, h);
+    float gloss = l->near * clearcoat_fresnel(c) * ggx_reflection_value(l->wo, w, h, (vec2){alpha, alpha});
+    float under = fm_min(in.clearcoat, l->through);
+    vec3 sheen = v3_scale(b->sheen.color, under * sheen_value(b->wo, wi, b->sheen.roughness));
+    float pdf = live ? b->p_clearcoat * clearcoat_pdf(l, h) : 0.0f;
+    return (layers_value){v3_add(sheen, v3_splat(live ? gloss : 0.0f)), pdf + b->p_sheen * sheen_pdf(wi, b->sheen.roughness)};
+}
+
+KERNEL void layers_make(bsdf *b, const surface *s) {
+    bsdf_clearcoat *l = &b->clearcoat;
+    l->near = s->clearcoat * s->near;
+    l->far = s->clearcoat * s->far;
+    l->alpha = s->clearcoat_roughness * s->clearcoat_roughness;
+    l->roughness = albedo_roughness_node(s->clearcoat_roughness);
+    l->frame = frame_make(s->clearcoat_normal);
+    l->wo = frame_to_local(&l->frame, b->wo);
+    l->wo.z = fm_max(l->wo.z, 1e-4f); /* its normal faces wo: rounding */
+    bsdf_sheen *sheen = &b->sheen;
+    float most = v3_max(s->sheen);
+    sheen->color = v3_scale(s->sheen, s->near);
+    sheen->near = most * s->near;
+    sheen->far = most * s->far;
+    sheen->roughness = sheen_roughness(s->sheen_roughness);
+    sheen->node = albedo_sheen_node(sheen->roughness);
+    layers_pass out = layers_through(b, fm_min(l->wo.z, 1.0f), fm_min(b->wo.z, 1.0f), 0);
+    l->through = out.clearcoat;
+    sheen->through = out.sheen;
+    bsdf_film *film = &b->film;
+    film->share = thin_film_share(s->film, s->film_thickness);
+    film->ior = s->film_ior;
+    film->thickness = s->film_thickness;
+    film->outside_eta = s->near > 0.5f ? 0.0f : s->eta;
+    film->metal_f0 = s->base;
+    film->metal = s->metallic;
+    film->dielectric = (1.0f - s->metallic) * (1.0f - s->transmission);
+}
+
+/* Cosine-weighted means over a hemisphere, by Gauss and Jacobi's rule of four points, exact to the seventh degree: of
+ * what reaches a base through coat and layers, on wo's side and on the far one, and of what layers let through of a
+ * metal's multiple scattering. */
+typedef struct layers_means { vec3 near, far; float again; } layers_means;
+
+KERNEL void layers_add_mean(const bsdf *b, float mu, float weight, layers_means *sum, float *again_weight) {
+    float full = bsdf_full(mu, b->alpha, b->roughness);
+    vec3 enters = complement(bsdf_coat_albedo(BSDF_LAYERED, b, mu, full));
+    layers_pass near = layers_through(b, mu, mu, 0), far = layers_through(b, mu, mu, 1);
+    float through = near.clearcoat * near.sheen;
+    sum->near = v3_madd(sum->near, weight * through, enters);
+    sum->far = v3_madd(sum->far, weight * far.clearcoat * far.sheen, enters);
+    float lost = weight * (1.0f - full) + 1e-9f; /* a mirror loses nothing: then the mean is plain */
+    sum->again += lost * through;
+    *again_weight += lost;
+}
+KERNEL layers_means layers_mean(const bsdf *b) {
+    layers_means sum = {v3_splat(0.0f), v3_splat(0.0f), 0.0f};
+    float lost = 0.0f;
+    layers_add_mean(b, 0.139759864f, 0.0623619419f, &sum, &lost);
+    layers_add_mean(b, 0.416409568f, 0.259695095f, &sum, &lost);
+    layers_add_mean(b, 0.723156986f, 0.406929136f, &sum, &lost);
+    layers_add_mean(b, 0.942895804f, 0.271013827f, &sum, &lost);
+    sum.again /= lost;
+    return sum;
+}
+
+#endif

@@ -1,0 +1,76 @@
+/* render/bsdf/reflectance.h: the Fresnel terms of a surface, and how much a rough one reflects in all. */
+#ifndef KILN_RENDER_BSDF_REFLECTANCE_H
+#define KILN_RENDER_BSDF_REFLECTANCE_H
+
+#include "render/bsdf/thin_film.h"
+#include "render/bsdf/fresnel.h"
+#include "render/bsdf/types.h"
+
+/* The interface's exact Fresnel term, stretched between the material's F0 and F90; 1 under total reflection. */
+KERNEL vec3 bsdf_exact_fresnel(const bsdf *b, float c) {
+    float root = (b->eta - 1.0f) / (b->eta + 1.0f), exact0 = root * root; /* < 1: eta is finite */
+    float f = fresnel_dielectric(c, b->eta), shape = (f - exact0) / (1.0f - exact0);
+    shape = shape > 0.0f ? shape : 0.0f;
+    vec3 scaled = v3_madd(b->f0, shape, v3_sub(v3_splat(b->f90), b->f0));
+    return v3_select(f >= 1.0f, v3_splat(1.0f), scaled);
+}
+
+/* The film at a cosine on wo's side. A stack of clear films reflects as much from either side: seen from within a solid,
+ * it is asked at the cosine outside. */
+KERNEL thin_film bsdf_film_at(const bsdf *b, float c) {
+    float eta = b->film.outside_eta, out2 = 1.0f - (1.0f - c * c) / (eta > 0.0f ? eta * eta : 1.0f);
+    float outside = sqrtf(out2 > 0.0f ? out2 : 0.0f);
+    return thin_film_make(eta > 0.0f ? outside : c, b->film.ior, b->film.thickness);
+}
+
+/* Of a transmissive interface, its film included. */
+KERNEL vec3 bsdf_interface_fresnel(unsigned mask, const bsdf *b, float c) {
+    vec3 exact = bsdf_exact_fresnel(b, c);
+    if (!(mask & BSDF_LAYERED)) return exact;
+    thin_film f = bsdf_film_at(b, c);
+    int total = exact.x >= 1.0f;
+    return v3_select(total, exact, v3_lerp(exact, thin_film_reflectance(&f, b->f0), b->film.share));
+}
+
+/* REFLECTION's. */
+KERNEL vec3 bsdf_reflection_fresnel(unsigned mask, const bsdf *b, float c) {
+    vec3 f = v3_madd(b->reflect0, fresnel_schlick_weight(c), b->reflect1);
+    if (mask & BSDF_LAYERED) {
+        thin_film t = bsdf_film_at(b, c);
+        vec3 on_metal = v3_scale(thin_film_reflectance(&t, b->film.metal_f0), b->film.metal);
+        vec3 on_both = v3_madd(on_metal, b->film.dielectric, thin_film_reflectance(&t, b->f0));
+        f = v3_lerp(f, on_both, b->film.share);
+    }
+    if (mask & BSDF_TRANSMISSIVE) f = v3_madd(f, b->interface, bsdf_interface_fresnel(mask, b, c));
+    return f;
+}
+
+/* Tables are read unconditionally and blended by flags of 0 and 1: a load under a condition would not vectorise. */
+KERNEL float bsdf_full(float mu, float alpha, albedo_node roughness) {
+    return fm_lerp(albedo_full(mu, alpha, roughness), 1.0f, bsdf_is_mirror(alpha) ? 1.0f : 0.0f);
+}
+/* The mean of Schlick's (1 − cos)^5 over what is reflected, seen from mu. */
+KERNEL float bsdf_schlick_share(float mu, float alpha, albedo_node roughness) {
+    return fm_lerp(albedo_schlick_share(mu, alpha, roughness), fresnel_schlick_weight(mu), bsdf_is_mirror(alpha) ? 1.0f : 0.0f);
+}
+
+/* The cosine that tables are asked for. Anisotropic ones see w from where an isotropic surface of the larger alpha would
+ * throw shadows as long. */
+KERNEL float bsdf_table_mu(unsigned mask, const bsdf *b, vec3 w) {
+    if (!(mask & BSDF_LAYERED)) return w.z;
+    float y = w.y * (b->alphas.y + 1e-20f) / (b->alphas.x + 1e-20f);
+    return fm_min(w.z / sqrtf(w.z * w.z + w.x * w.x + y * y), 1.0f); /* |w| = 1, and x or z is not 0 */
+}
+
+/* What the dielectric's coat reflects in all, seen from mu: full is bsdf_full there. */
+KERNEL vec3 bsdf_coat_albedo(unsigned mask, const bsdf *b, float mu, float full) {
+    float share = bsdf_schlick_share(mu, b->alpha, b->roughness);
+    vec3 f = v3_madd(b->f0, share, v3_sub(v3_splat(b->f90), b->f0));
+    if (mask & BSDF_LAYERED) { /* the film, about where its Schlick weight is the mean one */
+        thin_film t = bsdf_film_at(b, 1.0f - fm_pow(share, 0.2f));
+        f = v3_lerp(f, thin_film_reflectance(&t, b->f0), b->film.share);
+    }
+    return v3_scale(f, full);
+}
+
+#endif
