@@ -14,7 +14,7 @@ enum { D = 0, G = BSDF_GLOSSY, T = BSDF_GLOSSY | BSDF_TRANSMISSIVE, L = T | BSDF
 #define NO_LAYERS .clearcoat = 0
 #define ALL_LAYERS                                                                                                     \
     .clearcoat = 0.7f, .clearcoat_roughness = 0.3f, .sheen = GOLD, .sheen_roughness = 0.4f, .anisotropy = 0.5f,        \
-    .film = 0.5f, .film_ior = 1.4f, .film_thickness = 350, .pass = 0.5f, .pass_color = BROWN
+    .film = 0.5f, .film_ior = 1.4f, .film_thickness = 350, .pass = 0.5f, .pass_color = BROWN, .off_white = 0.1f
 
 /* name, mask, metallic, specular, ior, transmission, thin, inside, white, base, specular colour */
 const bsdf_case bsdf_cases[] = {
@@ -65,9 +65,9 @@ const bsdf_case bsdf_cases[] = {
     {"sheen of no roughness", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .sheen = WHITE, .sheen_roughness = 0},
     {"half anisotropic metal", L, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 0.5f, .off_white = 0.1f},
     {"anisotropic metal", L, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 1, .off_white = 0.3f},
-    {"anisotropic plastic", L, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .anisotropy = 0.7f},
-    {"anisotropic glass", L, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .anisotropy = 0.6f},
-    {"anisotropic thin wall", L, 0, 1, 1.5f, 1, 1, 0, 0, WHITE, WHITE, .anisotropy = 0.6f},
+    {"anisotropic plastic", L, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .anisotropy = 0.7f, .off_white = 0.1f},
+    {"anisotropic glass", L, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .anisotropy = 0.6f, .off_white = 0.1f},
+    {"anisotropic thin wall", L, 0, 1, 1.5f, 1, 1, 0, 0, WHITE, WHITE, .anisotropy = 0.6f, .off_white = 0.1f},
     {"film on metal", L, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, .film = 1, .film_ior = 1.8f, .film_thickness = 400},
     {"film on plastic", L, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 300,
      .off_white = 0.15f},

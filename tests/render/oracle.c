@@ -408,7 +408,7 @@ static bool scatter_in_medium(const path_context *c, path *p, float distance) {
 /* The cone of the ray that p has become; it came along `came`. */
 static cone widen(const path *p, const hit *h, const shading *s, vec3 came, int crosses) {
     const surface_triangle *t = &h->corners;
-    bool transmits = h->material->kind == KIND_TRANSMISSIVE, thin = transmits && s->bsdf.thin > 0.5f;
+    bool transmits = h->material->kind >= KIND_TRANSMISSIVE, thin = transmits && s->bsdf.thin > 0.5f;
     cone_bounce b = {.d = came, .n = s->frame.z, .wi = p->direction, .pdf = p->pdf, .eta = 1, .bumpy = h->bumpy,
                      .bends = crosses & !thin, .passes = crosses & thin};
     if (transmits) b.eta = s->bsdf.eta;
