@@ -70,7 +70,10 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
     X(float, px) X(float, py) X(float, pz)                                                                             \
     X(float, gx) X(float, gy) X(float, gz)       /* geometric normal */                                                \
     X(float, nx) X(float, ny) X(float, nz)       /* shading normal */                                                  \
-    X(float, reach)                              /* rays leave this far along the geometric normal */                  \
+    X(float, reach)                              /* rays must start this far along the geometric normal */             \
+    X(float, plane_x) X(float, plane_y) X(float, plane_z) /* of the plane that parts the sides (surface_sides) */       \
+    X(float, above_x) X(float, above_y) X(float, above_z) /* where rays leave on wo's side */                           \
+    X(float, below_x) X(float, below_y) X(float, below_z) /* where rays leave on the far side */                        \
     X(float, area)                               /* of the triangle */                                                 \
     X(float, front)                              /* 1: seen from the front, 0: from behind */                          \
     X(float, tu) X(float, tv)                    /* UV of the first set */

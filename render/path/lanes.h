@@ -37,8 +37,11 @@ KERNEL surface lane_surface(unsigned mask, const path_scratch *x, uint32_t i) {
 
 KERNEL shading lane_shading(unsigned mask, const path_state *s, const path_scratch *x, uint32_t i) {
     surface u = lane_surface(mask, x, i);
-    return shading_make(mask, &u, v3(x->px[i], x->py[i], x->pz[i]), v3(x->gx[i], x->gy[i], x->gz[i]),
-                        v3(x->nx[i], x->ny[i], x->nz[i]), x->reach[i], v3(-s->dx[i], -s->dy[i], -s->dz[i]));
+    surface_sides sides = {{x->plane_x[i], x->plane_y[i], x->plane_z[i]},
+                           {x->above_x[i], x->above_y[i], x->above_z[i]},
+                           {x->below_x[i], x->below_y[i], x->below_z[i]}};
+    return shading_make(mask, &u, sides, v3(x->gx[i], x->gy[i], x->gz[i]), v3(x->nx[i], x->ny[i], x->nz[i]),
+                        v3(-s->dx[i], -s->dy[i], -s->dz[i]));
 }
 
 #endif

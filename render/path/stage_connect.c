@@ -51,7 +51,7 @@ static void attenuate(const path_context *c, batch *b) {
     const path_state *s = batch_state(b);
     path_scratch *x = &b->scratch;
     for (uint32_t i = 0; i < b->n; i++) {
-        vec3 wi = {x->wx[i], x->wy[i], x->wz[i]}, n = {x->gx[i], x->gy[i], x->gz[i]};
+        vec3 wi = {x->wx[i], x->wy[i], x->wz[i]}, n = {x->plane_x[i], x->plane_y[i], x->plane_z[i]};
         uint64_t media = v3_dot(wi, n) < 0.0f ? x->beyond[i] : s->media[i];
         vec3 left = medium_transmittance(c->world->extinction, medium_top(media), x->distance[i]);
         x->cr[i] *= left.x, x->cg[i] *= left.y, x->cb[i] *= left.z;

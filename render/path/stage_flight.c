@@ -52,6 +52,8 @@ void STAGE(scattering)(const path_context *c, batch *b) {
         float t = h->t[i];
         x->px[i] = s->ox[i] + t * s->dx[i], x->py[i] = s->oy[i] + t * s->dy[i], x->pz[i] = s->oz[i] + t * s->dz[i];
         /* What stages ask that are not only about surfaces. */
+        x->above_x[i] = x->px[i], x->above_y[i] = x->py[i], x->above_z[i] = x->pz[i];
+        x->plane_x[i] = x->plane_y[i] = x->plane_z[i] = 0.0f;
         x->gx[i] = x->gy[i] = x->gz[i] = x->nx[i] = x->ny[i] = x->nz[i] = x->tu[i] = x->tv[i] = 0.0f;
         x->material[i] = w->triangle_material[h->triangle[i]];
         x->beyond[i] = s->media[i];

@@ -42,7 +42,7 @@ KERNEL void sample(unsigned kinds, batch *b) {
                    .spot_offset = x->spot_offset[i],
                    .one_minus_cos = x->one_minus_cos[i],
                    .two_sided = x->two_sided[i]};
-        vec3 p = {x->px[i], x->py[i], x->pz[i]};
+        vec3 p = {x->above_x[i], x->above_y[i], x->above_z[i]};
         light_sampled r = light_sample(kinds, &l, p, (vec2){x->u_light_x[i], x->u_light_y[i]});
         x->wx[i] = r.wi.x, x->wy[i] = r.wi.y, x->wz[i] = r.wi.z;
         x->tx[i] = r.target.x, x->ty[i] = r.target.y, x->tz[i] = r.target.z;

@@ -87,6 +87,53 @@ KERNEL surface_point surface_at(vec3 o, vec3 d, const surface_triangle *s) {
                                   b0 * s->uv0.y + h.u * s->uv1.y + h.v * s->uv2.y}};
 }
 
+/* Where rays leave a point from, and which plane parts what leaves on wo's side from what crosses. */
+typedef struct surface_sides {
+    vec3 normal;       /* of that plane, facing wo */
+    vec3 above, below; /* origins on wo's side and on the far side */
+} surface_sides;
+
+KERNEL surface_sides surface_flat_sides(const surface_point *p) {
+    return (surface_sides){p->geometric, v3_madd(p->position, p->reach, p->geometric),
+                           v3_madd(p->position, -p->reach, p->geometric)};
+}
+
+/* A shading normal that faces away from wo has no meaning for a reflection: it is turned until wo just grazes the
+ * surface. The least cosine, 1/100, keeps the frame's wo.z well above rounding. */
+KERNEL vec3 surface_face(vec3 n, vec3 wo) {
+    const float least = 0.01f;
+    float c = v3_dot(n, wo);
+    vec3 turned = v3_normalize(v3_madd(n, least - c, wo)); /* n − (n·wo) wo + least wo is at least `least` long */
+    return v3_select(c < least, turned, n);
+}
+
+/* How far a corner's tangent plane lies above a point of the triangle, along the corner's normal, times the corner's
+ * weight. Normals that lean more than 53° from the facet are those of an edge that was smoothed away (a cube's corners
+ * lean 55°), not of a surface that the facet stands for. */
+KERNEL vec3 surface_corner_lift(vec3 position, vec3 corner, vec3 n, float weight, vec3 geometric) {
+    float length2 = v3_dot(n, n), slope = v3_dot(n, geometric), depth = v3_dot(v3_sub(corner, position), n);
+    depth = slope < 0.0f ? -depth : depth;
+    int rises = (depth > 0.0f) & (slope * slope > 0.36f * length2);
+    float along = weight * depth / fm_max(length2, 1e-37f);
+    return v3_scale(n, rises ? slope < 0.0f ? -along : along : 0.0f);
+}
+
+/* Hanika 2021, "Hacking the Shadow Terminator" (Ray Tracing Gems II, chapter 4): what leaves a bulging facet starts at
+ * the smooth surface that it stands for, so that neither its own horizon nor its neighbours' edges cut the light that the
+ * smooth surface would get; what its shape itself hides, the ray finds out. Rays that cross start at the facet. Where the
+ * smooth surface is not above the facet, the facet's plane is the one that counts. */
+KERNEL surface_sides surface_smooth_sides(const surface_point *p, const surface_triangle *t, vec3 wo) {
+    vec3 x = p->position, g = p->geometric;
+    float b0 = 1.0f - p->hit.u - p->hit.v;
+    vec3 lift = surface_corner_lift(x, t->p0, t->n0, b0, g);
+    lift = v3_add(lift, surface_corner_lift(x, t->p1, t->n1, p->hit.u, g));
+    lift = v3_add(lift, surface_corner_lift(x, t->p2, t->n2, p->hit.v, g));
+    int lifted = v3_dot(lift, g) > p->reach;
+    surface_sides flat = surface_flat_sides(p);
+    return (surface_sides){v3_select(lifted, surface_face(p->shading, wo), g),
+                           v3_add(flat.above, v3_select(lifted, lift, v3_splat(0.0f))), flat.below};
+}
+
 /* The tangent-space normal of a map in render space: x T + y B + z N, N of unit length, T made orthogonal to it,
  * B = w N × T (glTF 2.0, 3.7.2.1). x = y = 0 stands for no map. Seen from behind, the bent surface is turned over as a
  * whole: its relief stays where it is. */
@@ -114,15 +161,6 @@ KERNEL vec3 surface_along(vec3 normal, vec3 tangent, float w, float u, float v, 
     float length2 = v3_dot(along, along);
     int usable = length2 > 1e-12f * v3_dot(tangent, tangent) * (u * u + v * v);
     return v3_select(usable, v3_scale(along, 1.0f / sqrtf(usable ? length2 : 1.0f)), frame_make(normal).x);
-}
-
-/* A shading normal that faces away from wo has no meaning for a reflection: it is turned until wo just grazes the
- * surface. The least cosine, 1/100, keeps the frame's wo.z well above rounding. */
-KERNEL vec3 surface_face(vec3 n, vec3 wo) {
-    const float least = 0.01f;
-    float c = v3_dot(n, wo);
-    vec3 turned = v3_normalize(v3_madd(n, least - c, wo)); /* n − (n·wo) wo + least wo is at least `least` long */
-    return v3_select(c < least, turned, n);
 }
 
 #endif

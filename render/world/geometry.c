@@ -349,9 +349,9 @@ static void warn_of_motion(const build *b, kiln_report *report) {
                        moving, b->scene->instance_count);
 }
 
-static bool has_colors(const build *b) {
+static bool some_mesh_has(const build *b, kiln_primvar_kind kind) {
     for (uint32_t i = 0; i < b->scene->mesh_count; i++)
-        if (b->shapes[i].mesh && mesh_primvar(b->shapes[i].mesh, KILN_PRIMVAR_COLOR, 0)) return true;
+        if (b->shapes[i].mesh && mesh_primvar(b->shapes[i].mesh, kind, 0)) return true;
     return false;
 }
 
@@ -360,7 +360,8 @@ static bool run(build *b, uint32_t threads, kiln_report *report) {
     b->presences = array_alloc(b->scene->instance_count, sizeof *b->presences);
     if (!b->presences) return report_no_memory(report, "building geometry");
     choose_baking(b);
-    w->has_colors = has_colors(b);
+    w->has_colors = some_mesh_has(b, KILN_PRIMVAR_COLOR);
+    w->smooth = some_mesh_has(b, KILN_PRIMVAR_NORMAL);
     warn_of_motion(b, report);
     if (w->wants_tangents) warn_of_missing_tangents(b, report);
     threads_for(threads, b->scene->mesh_count, make_shape, b);

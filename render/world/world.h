@@ -146,6 +146,7 @@ typedef struct world {
     float *spectrum;     /* spectrum.h; NULL: no medium disperses */
 
     light_table lights;
+    bool smooth;         /* some mesh has normals of its own */
     bool emits;          /* some surface shines, lights or unlit ones */
     struct accel *accel;
 } world;

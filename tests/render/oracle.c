@@ -26,6 +26,7 @@ typedef struct hit {
     surface_triangle corners;
     float across; /* of the cone */
     int bumpy;    /* a normal map says something */
+    surface_sides sides;
     const world_material *material;
     uint64_t beyond; /* media behind it */
     ray_crossing met;
@@ -127,6 +128,7 @@ static bool find(const path_context *c, path *p, hit *h) {
     h->p = surface_at(p->origin, p->direction, &tri);
     h->corners = tri;
     h->across = p->cone.width + p->cone.spread * h->p.hit.t;
+    h->sides = w->smooth ? surface_smooth_sides(&h->p, &tri, v3_neg(p->direction)) : surface_flat_sides(&h->p);
     h->material = &w->materials[w->triangle_material[h->triangle]];
     if (!w->touches) h->beyond = medium_cross(p->media, h->material->medium, h->p.front > 0.5f);
     return true;
@@ -362,9 +364,9 @@ static void reach(const path_context *c, path *p, const shading_connection *n, u
 /* Next-event estimation. */
 static void connect(const path_context *c, path *p, const hit *h, const shading *s, unsigned mask) {
     float density;
-    light_sampled r = draw_light(c, p, s->position, &density);
+    light_sampled r = draw_light(c, p, s->sides.above, &density);
     shading_connection n = shading_connect(mask, s, c->estimator, p->throughput, &r, density);
-    reach(c, p, &n, medium_top(v3_dot(r.wi, s->geometric) < 0.0f ? h->beyond : p->media), r.distance);
+    reach(c, p, &n, medium_top(v3_dot(r.wi, s->sides.normal) < 0.0f ? h->beyond : p->media), r.distance);
 }
 
 /* Does the medium scatter before the surface? Then at *distance. */
@@ -448,7 +450,7 @@ static shading arrive(const path_context *c, path *p, hit *h) {
     surface s = look_up(c, h, wo, &emission, &normal);
     bound(c, p, h, &s);
     if (c->world->emits) emit(c, p, h, emission);
-    return shading_make(mask_of(h->material->kind), &s, h->p.position, h->p.geometric, normal, h->p.reach, wo);
+    return shading_make(mask_of(h->material->kind), &s, h->sides, h->p.geometric, normal, wo);
 }
 
 oracle_result oracle_trace(const path_context *c, path_sample sample) {

@@ -32,7 +32,7 @@ static surface_point point_of(const world *w, const rays *r, uint32_t i) {
     return surface_at(rays_origin(r, i), rays_direction(r, i), &t);
 }
 
-/* Rays that leave hit points in all directions, as shading_leave has it. leaves: those that do. */
+/* Rays that leave hit points in all directions, as surface_flat_sides has it. leaves: those that do. */
 typedef struct spawned { rays rays; uint32_t *from_triangle, *from_instance; bool *outward; } spawned;
 
 static spawned spawn(const world *w, const rays *r, uint32_t seed) {
