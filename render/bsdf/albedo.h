@@ -32,7 +32,7 @@ extern const float albedo_interface_table[ALBEDO_SLICE * ALBEDO_IORS];
 extern const float albedo_interface_loss_table[ALBEDO_LOSSES * ALBEDO_IORS];
 
 /* GGX alpha of a row. Roughness 0 is a mirror; its row is that of a roughness near enough to have a limit. */
-static inline double albedo_row_alpha(int row) {
+KERNEL double albedo_row_alpha(int row) {
     double roughness = row ? (double)row / (ALBEDO_ROUGHNESS - 1) : 0.01;
     return roughness * roughness;
 }
@@ -40,7 +40,7 @@ static inline double albedo_row_alpha(int row) {
 /* Where a value lies between two nodes of n. */
 typedef struct albedo_node { int32_t index; float fraction; } albedo_node;
 
-static inline albedo_node albedo_node_of(float unit, int32_t n) {
+KERNEL albedo_node albedo_node_of(float unit, int32_t n) {
     float f = unit * (float)(n - 1);
     f = f > 0.0f ? f : 0.0f; /* NaN too */
     f = f < (float)(n - 1) ? f : (float)(n - 1);
@@ -49,64 +49,64 @@ static inline albedo_node albedo_node_of(float unit, int32_t n) {
     return (albedo_node){i, f - (float)i};
 }
 
-static inline float albedo_bilinear(const float *table, int32_t columns, albedo_node column, albedo_node row) {
+KERNEL float albedo_bilinear(const float *table, int32_t columns, albedo_node column, albedo_node row) {
     int32_t at = row.index * columns + column.index;
     float a = table[at] + column.fraction * (table[at + 1] - table[at]);
     float b = table[at + columns] + column.fraction * (table[at + columns + 1] - table[at + columns]);
     return a + row.fraction * (b - a);
 }
 
-static inline float albedo_linear(const float *table, albedo_node node) {
+KERNEL float albedo_linear(const float *table, albedo_node node) {
     return table[node.index] + node.fraction * (table[node.index + 1] - table[node.index]);
 }
 
 /* Where mu = cos θ ≥ 0 lies among the columns. */
-static inline albedo_node albedo_cosine_node(float mu, float alpha) {
+KERNEL albedo_node albedo_cosine_node(float mu, float alpha) {
     float grazing = sqrtf(mu * (1.0f + alpha) / (mu + alpha + 1e-30f)); /* alpha 0 at mu 0 */
     return albedo_node_of((1.0f - ALBEDO_COSINE_SHARE) * grazing + ALBEDO_COSINE_SHARE * mu, ALBEDO_COSINES);
 }
 
 /* One row of a material's roughness serves all look-ups of a shading point. */
-static inline albedo_node albedo_roughness_node(float roughness) { return albedo_node_of(roughness, ALBEDO_ROUGHNESS); }
+KERNEL albedo_node albedo_roughness_node(float roughness) { return albedo_node_of(roughness, ALBEDO_ROUGHNESS); }
 
 /* Mean losses bend more between rows than what they are the means of: their rows are finer. */
 typedef struct albedo_loss { albedo_node row; float alpha2; } albedo_loss; /* alpha² */
-static inline albedo_loss albedo_loss_of(albedo_node roughness) {
+KERNEL albedo_loss albedo_loss_of(albedo_node roughness) {
     float r = ((float)roughness.index + roughness.fraction) * (1.0f / (ALBEDO_ROUGHNESS - 1)), alpha = r * r;
     return (albedo_loss){albedo_node_of(r, ALBEDO_LOSSES), alpha * alpha};
 }
 
-static inline float albedo_full(float mu, float alpha, albedo_node roughness) {
+KERNEL float albedo_full(float mu, float alpha, albedo_node roughness) {
     return albedo_bilinear(albedo_full_table, ALBEDO_COSINES, albedo_cosine_node(mu, alpha), roughness);
 }
-static inline float albedo_full_mean(albedo_node roughness) {
+KERNEL float albedo_full_mean(albedo_node roughness) {
     albedo_loss l = albedo_loss_of(roughness);
     return 1.0f - l.alpha2 * albedo_linear(albedo_full_loss_table, l.row);
 }
 
-static inline float albedo_schlick_share(float mu, float alpha, albedo_node roughness) {
+KERNEL float albedo_schlick_share(float mu, float alpha, albedo_node roughness) {
     float relative = albedo_bilinear(albedo_schlick_table, ALBEDO_COSINES, albedo_cosine_node(mu, alpha), roughness);
     float m = 1.0f - relative * (mu + alpha), m2 = m * m;
     return m2 * m2 * m;
 }
-static inline float albedo_schlick_mean(albedo_node roughness) {
+KERNEL float albedo_schlick_mean(albedo_node roughness) {
     return albedo_linear(albedo_schlick_mean_table, roughness);
 }
 
 /* Where η of the far side over the near one lies among the slices of the interface table. */
-static inline albedo_node albedo_ior_node(float eta) {
+KERNEL albedo_node albedo_ior_node(float eta) {
     float x = (eta - 1.0f) / (eta + 1.0f), k = sqrtf(fabsf(x) * (1.0f / ALBEDO_X_MAX));
     return albedo_node_of(0.5f + copysignf(0.5f * k, x), ALBEDO_IORS);
 }
 
-static inline float albedo_interface(albedo_node ior, float mu, float alpha, albedo_node roughness) {
+KERNEL float albedo_interface(albedo_node ior, float mu, float alpha, albedo_node roughness) {
     albedo_node column = albedo_cosine_node(mu, alpha);
     column.index += ior.index * ALBEDO_SLICE;
     float low = albedo_bilinear(albedo_interface_table, ALBEDO_COSINES, column, roughness);
     column.index += ALBEDO_SLICE;
     return low + ior.fraction * (albedo_bilinear(albedo_interface_table, ALBEDO_COSINES, column, roughness) - low);
 }
-static inline float albedo_interface_mean(albedo_node ior, albedo_node roughness) {
+KERNEL float albedo_interface_mean(albedo_node ior, albedo_node roughness) {
     albedo_loss l = albedo_loss_of(roughness);
     return 1.0f - l.alpha2 * albedo_bilinear(albedo_interface_loss_table, ALBEDO_LOSSES, l.row, ior);
 }
@@ -118,17 +118,17 @@ enum { ALBEDO_SHEEN = 32, ALBEDO_SHEEN_ROUGHNESS = 25 };
 extern const float albedo_sheen_table[ALBEDO_SHEEN * ALBEDO_SHEEN_ROUGHNESS];
 extern const float albedo_sheen_mean_table[ALBEDO_SHEEN_ROUGHNESS];
 
-static inline albedo_node albedo_sheen_node(float roughness) {
+KERNEL albedo_node albedo_sheen_node(float roughness) {
     float unit = (roughness - SHEEN_ROUGHNESS_MIN) * (1.0f / (1.0f - SHEEN_ROUGHNESS_MIN));
     return albedo_node_of(unit, ALBEDO_SHEEN_ROUGHNESS);
 }
 
-static inline float albedo_sheen(float mu, albedo_node roughness) {
+KERNEL float albedo_sheen(float mu, albedo_node roughness) {
     float s = SHEEN_SPREAD / ALBEDO_SHEEN_ROUGHNESS * ((float)(roughness.index + 1) + roughness.fraction);
     float t = sqrtf(sqrtf(mu * (1.0f + s) / (mu + s)));
     return albedo_bilinear(albedo_sheen_table, ALBEDO_SHEEN, albedo_node_of(t, ALBEDO_SHEEN), roughness);
 }
-static inline float albedo_sheen_mean(albedo_node roughness) {
+KERNEL float albedo_sheen_mean(albedo_node roughness) {
     return albedo_linear(albedo_sheen_mean_table, roughness);
 }
 
