@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -19,7 +20,7 @@
 /* The threshold of a mirror is at roughness 0.01; the last cosine is the least that shading normals leave. */
 static const float roughnesses[] = {0, 0.0099f, 0.0101f, 0.05f, 0.25f, 0.6f, 1};
 static const float cosines[] = {1, 0.6f, 0.1f, 0.01f};
-enum { ROUGHNESSES = 7, COSINES = 4 };
+enum { ROUGHNESSES = 7, COSINES = 4, SAMPLES = 4000 };
 
 typedef struct setting {
     probe probe;
@@ -38,6 +39,25 @@ static void __attribute__((format(printf, 2, 3))) complain(const setting *s, con
     va_end(args);
     if (failures++ < 20)
         print_error("%s, roughness %g, cos %g: %s\n", s->name, (double)s->roughness, (double)s->cosine, text);
+}
+
+/* What was tested, and the least of the chi-square tests' p-values. */
+static struct { int chi_squares; double least_p; const char *name; float roughness, cosine; } grid = {.least_p = 1};
+
+static void note_chi_square(const setting *s, double p) {
+    grid.chi_squares++;
+    if (p >= grid.least_p) return;
+    grid.least_p = p;
+    grid.name = s->name, grid.roughness = s->roughness, grid.cosine = s->cosine;
+}
+
+static void print_grid(void) {
+    double tests = (double)bsdf_case_count * ROUGHNESSES * COSINES;
+    print_message("grid: %zu materials x up to %d roughnesses x %d cosines: %d chi-square tests of %d samples, each at the "
+                  "level of %.3g, %g jointly\n", bsdf_case_count, ROUGHNESSES, COSINES, grid.chi_squares, SAMPLES,
+                  sidak(LEVEL, tests), LEVEL);
+    print_message("smallest p-value %.3g (%s, roughness %g, cos %g); the least of as many even ones has a mean of %.3g\n",
+                  grid.least_p, grid.name, (double)grid.roughness, (double)grid.cosine, 1.0 / (grid.chi_squares + 1));
 }
 
 static void for_each_setting(void (*check)(setting *, double tests)) {
@@ -72,7 +92,6 @@ static bool is_absorbed(const setting *s, const bsdf_sampled *r) {
     return !(r->pdf > 0) || !refracted || largest(probe_evaluate(&s->probe, r->wi).value) > 0;
 }
 
-enum { SAMPLES = 4000 };
 /* What midpoints and single precision leave of an integral: relative to 1 for probabilities, to the value for values. A
  * streak that is refracted close to the horizon is cut by it where few points lie. */
 #define QUADRATURE 6e-3
@@ -101,6 +120,7 @@ static void check_counts(setting *s, double tests) {
     if (normal_tail(fmax(fabs(lost - (1 - all)) - off_chart, 0) / error) < sidak(LEVEL, tests))
         complain(s, "pdf integrates to %.5f, and %.5f come to nothing", all, lost);
     double p = chi_square_p(counts, wanted, CHART_CELLS + 1);
+    note_chi_square(s, p);
     if (p < sidak(LEVEL, tests)) complain(s, "sample does not follow pdf (p = %g)", p);
     const bsdf *b = &s->probe.bsdf;
     bool hardly = s->probe.mask & BSDF_TRANSMISSIVE && b->p_transmit > 0 && b->p_transmit < 0.05f;
@@ -118,6 +138,20 @@ static void check_counts(setting *s, double tests) {
 static void samples_follow_pdf(void **state) {
     (void)state;
     for_each_setting(check_counts);
+    print_grid();
+}
+
+/* A lobe that bsdf_cases.c names no row for does not link. */
+static void every_lobe_has_a_row(void **state) {
+    (void)state;
+#define NAME(id, text) bsdf_case_of_##id,
+    const char *names[] = {BSDF_LOBES(NAME)};
+#undef NAME
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        bool found = false;
+        for (size_t c = 0; c < bsdf_case_count; c++) found = found || !strcmp(names[i], bsdf_cases[c].name);
+        if (!found) fail_msg("there is no row '%s'", names[i]);
+    }
 }
 
 /* The combined multiplier is value over density where there is a density. A delta lobe has none, and near its direction
@@ -173,6 +207,7 @@ static void naive_form_expects_the_same(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_lobe_has_a_row),
         cmocka_unit_test(samples_follow_pdf),
         cmocka_unit_test(multipliers_are_value_over_pdf),
         cmocka_unit_test(naive_form_expects_the_same),

@@ -1,6 +1,6 @@
 /* What the BSDF gives back of what it gets: reciprocity, directional albedos, and finite numbers whatever is asked.
  *
- * The test prints a table of albedos; docs/estimator.md quotes it. */
+ * The test prints a table of albedos, and the largest of all. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -59,6 +59,9 @@ static dvec3 directional_albedo(const probe *p) {
 /* What was found of all white materials, for the table. */
 static double lowest[ROUGHNESSES][COSINES], highest[ROUGHNESSES][COSINES];
 
+/* The largest albedo of all rows, white or not, and where it was. */
+static struct { double albedo; const char *name; float roughness, cosine; } worst;
+
 static void print_table(void) {
     print_message("albedo of white materials: lowest and highest of all kinds\nroughness");
     for (int k = 0; k < COSINES; k++) print_message("      cos %-4g", (double)cosines[k]);
@@ -66,7 +69,8 @@ static void print_table(void) {
         print_message("\n%-9g", (double)roughnesses[r]);
         for (int k = 0; k < COSINES; k++) print_message("  %.4f %.4f", lowest[r][k], highest[r][k]);
     }
-    print_message("\n");
+    print_message("\nlargest of all %zu materials: %.5f (%s, roughness %g, cos %g)\n", bsdf_case_count, worst.albedo,
+                  worst.name, (double)worst.roughness, (double)worst.cosine);
 }
 
 static void check_albedo(const subject *s, int r, int k) {
@@ -74,6 +78,10 @@ static void check_albedo(const subject *s, int r, int k) {
     dvec3 a = directional_albedo(&p);
     vec3 aov = probe_albedo(&p);
     double most = fmax(a.x, fmax(a.y, a.z)), least = fmin(a.x, fmin(a.y, a.z));
+    if (most > worst.albedo) {
+        worst.albedo = most;
+        worst.name = s->row->name, worst.roughness = roughnesses[r], worst.cosine = cosines[k];
+    }
     bool mirror = r == 0 && !(s->row->mask & BSDF_LAYERED);
     double tolerance = mirror ? OFF_MIRROR : s->row->inside || !s->row->white ? OFF_INSIDE : OFF_WHITE;
     if (r > 0 && s->row->transmission > 0 && cosines[k] < 0.05f) tolerance = OFF_GRAZING;

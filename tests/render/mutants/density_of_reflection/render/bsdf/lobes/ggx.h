@@ -6,6 +6,6 @@
 #include_next "render/bsdf/lobes/ggx.h"
 #undef ggx_reflection_pdf
 
-KERNEL float ggx_reflection_pdf(vec3 wo, vec3 h, float alpha) { return 1.05f * ggx_reflection_pdf_original(wo, h, alpha); }
+KERNEL float ggx_reflection_pdf(vec3 wo, vec3 h, vec2 alpha) { return 1.05f * ggx_reflection_pdf_original(wo, h, alpha); }
 
 #endif
