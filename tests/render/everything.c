@@ -64,6 +64,79 @@ static kiln_id coverage(scene_builder *b, kiln_alpha_mode mode) {
     return add_material(b, &m);
 }
 
+/* Factors from 0 to 1 in one channel. */
+static kiln_texture factors(scene_builder *b, uint32_t seed, uint32_t channel) {
+    return texture(noise_image(b, seed, 0, 255), channel, seed % 2, KILN_TRANSFER_DATA);
+}
+
+static void add_clearcoat(scene_builder *b, kiln_material *m) {
+    m->layers |= KILN_LAYER_CLEARCOAT;
+    m->clearcoat.value = 0.9f;
+    m->clearcoat.texture = factors(b, 20, 0);
+    m->clearcoat_roughness.value = 0.5f;
+    m->clearcoat_roughness.texture = factors(b, 21, 1);
+    m->clearcoat_normal.texture = texture(noise_image(b, 22, 100, 160), 0, 0, KILN_TRANSFER_DATA);
+}
+
+static void add_sheen(scene_builder *b, kiln_material *m) {
+    m->layers |= KILN_LAYER_SHEEN;
+    for (int k = 0; k < 3; k++) m->sheen_color.value[k] = 0.3f + 0.3f * (float)k;
+    m->sheen_color.texture = texture(noise_image(b, 23, 0, 255), 0, 0, KILN_TRANSFER_SRGB);
+    m->sheen_roughness.value = 0.8f;
+    m->sheen_roughness.texture = factors(b, 24, 3);
+}
+
+static void add_anisotropy(scene_builder *b, kiln_material *m) {
+    m->layers |= KILN_LAYER_ANISOTROPY;
+    m->anisotropy.value = 0.8f;
+    m->anisotropy.texture = factors(b, 25, 0);
+    m->anisotropy_rotation = 0.7f;
+}
+
+static void add_film(scene_builder *b, kiln_material *m) {
+    m->layers |= KILN_LAYER_IRIDESCENCE;
+    m->iridescence.value = 0.9f;
+    m->iridescence.texture = factors(b, 26, 0);
+    m->iridescence_ior = 1.4f;
+    m->iridescence_thickness[0] = 100, m->iridescence_thickness[1] = 600;
+    m->iridescence_thickness_texture = factors(b, 27, 1);
+}
+
+static void add_diffuse_transmission(scene_builder *b, kiln_material *m) {
+    m->layers |= KILN_LAYER_DIFFUSE_TRANSMISSION;
+    m->diffuse_transmission.value = 0.7f;
+    m->diffuse_transmission.texture = factors(b, 28, 3);
+    m->diffuse_transmission_color.value[0] = 0.4f;
+    m->diffuse_transmission_color.texture = texture(noise_image(b, 29, 0, 255), 0, 0, KILN_TRANSFER_SRGB);
+}
+
+/* A dielectric with none, some or all of the layers on it. */
+enum { COATED = 1, CLOTH = 2, BRUSHED = 4, OILY = 8, THIN_LEAF = 16, WAX = 32, GLOSSY = 64, ALL = 127 };
+
+static kiln_id layered(scene_builder *b, int layers, float metallic) {
+    kiln_material m = kiln_material_default();
+    m.metallic.value = metallic;
+    m.roughness.value = 0.6f;
+    m.base_color.value[1] = 0.7f;
+    m.double_sided = true;
+    if (layers & COATED) add_clearcoat(b, &m);
+    if (layers & CLOTH) add_sheen(b, &m);
+    if (layers & BRUSHED) add_anisotropy(b, &m);
+    if (layers & OILY) add_film(b, &m);
+    if (layers & (THIN_LEAF | WAX)) add_diffuse_transmission(b, &m);
+    if (layers & WAX) {
+        m.layers |= KILN_LAYER_VOLUME;
+        m.thickness.value = 1;
+        m.attenuation_distance = 0.2f;
+        m.attenuation_color[2] = 0.3f;
+    }
+    if (layers & GLOSSY) {
+        m.layers |= KILN_LAYER_GLOSSINESS;
+        m.roughness.texture = factors(b, 30, 3);
+    }
+    return add_material(b, &m);
+}
+
 static kiln_id emitter(scene_builder *b, bool unlit) {
     kiln_material m = diffuse_material(0.5f, 0.5f, 0.4f);
     for (int k = 0; k < 3; k++) m.emission.value[k] = 3;
@@ -94,6 +167,18 @@ static void add_panel(scene_builder *b, kiln_id material, const double (*transfo
     }
 }
 
+/* Side by side below the lamp; what is made of tangents has some, and solids are closed. */
+static void add_layered(scene_builder *b) {
+    static const int panels[] = {COATED, CLOTH, COATED | BRUSHED, OILY, THIN_LEAF | GLOSSY, BRUSHED | GLOSSY, ALL & ~WAX};
+    for (int i = 0; i < 7; i++) {
+        double x = -1.5 + 0.5 * i, z = 0.9 - 0.1 * (i % 3);
+        const double at[1][16] = {{.22, 0, .04, 0, .03, .1, -.2, 0, 0, .2, .1, 0, x, .35 + .1 * (i % 2), z, 1}};
+        add_panel(b, layered(b, panels[i], i % 3 == 2 ? 0.8f : 0.1f), at, 1);
+    }
+    add_sphere(b, layered(b, WAX, 0), (float[3]){-1, 1.2f, .5f}, .2f, 16, 0);
+    add_sphere(b, layered(b, ALL & ~THIN_LEAF, 0.2f), (float[3]){1.1f, 1.2f, .5f}, .2f, 16, 0);
+}
+
 void add_everything(scene_builder *b) {
     const double floor_at[1][16] = {{3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1}};
     const double panels[3][16] = {{.4, .1, 0, 0, -.1, .4, 0, 0, 0, .2, .4, 0, -1, .4, -.5, 1},
@@ -119,6 +204,7 @@ void add_everything(scene_builder *b) {
     add_sphere(b, add_material(b, &metal), (float[3]){.9f, .3f, .6f}, .3f, 24, 0);
     add_sphere(b, add_material(b, &film), (float[3]){.4f, 1.3f, .4f}, .25f, 16, SPHERE_FLAT);
     add_sphere(b, coverage(b, KILN_ALPHA_MASK), (float[3]){-.5f, 1.3f, .2f}, .2f, 16, 0);
+    add_layered(b);
     kiln_light point = light_at(KILN_LIGHT_POINT, (float[3]){-1.5f, 1.5f, 1}, (float[3]){0, 0, 0}, 2);
     kiln_light spot = light_at(KILN_LIGHT_SPOT, (float[3]){1.5f, 2, 1.5f}, (float[3]){0, .3f, 0}, 6);
     kiln_light beam = light_at(KILN_LIGHT_DISTANT, (float[3]){1, 3, 1}, (float[3]){0, 0, 0}, 0.5f);

@@ -35,8 +35,9 @@ void set_environment(scene_builder *, kiln_id image, float r, float g, float b);
 kiln_id add_image(scene_builder *, const float *rgb, uint32_t width, uint32_t height);
 kiln_camera camera_at(const float eye[3], const float at[3], double yfov_degrees);
 
-/* A room that uses everything the estimator has: every kind of light and of material, textures in every slot, vertex
- * colours, partial coverage, nested glass that absorbs, mirrored and shared instances, a sun of visible size. */
+/* A room that uses everything the estimator has: every kind of light and of material, textures in every slot, every
+ * layer and stacks of them, vertex colours, partial coverage, nested glass that absorbs, mirrored and shared instances,
+ * a sun of visible size. */
 void add_everything(scene_builder *);
 kiln_camera everything_camera(void);
 
