@@ -1,0 +1,120 @@
+"""Renders the table of cases.py with kiln and with what else is there, and writes the page. script/compare-materials
+runs
+it; --help says how."""
+import argparse
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+import assets
+import cases
+import page
+import scene
+
+HERE = pathlib.Path(__file__).resolve().parent
+# A white world is what kiln alone is asked about: how much comes back of it is known.
+SETTINGS = {"size": scene.SIZE, "half": scene.HALF, "spp": 64, "peers_spp": 32, "peers_see": "boxes", "seeds": 4,
+    "depth": 64}
+
+
+def say(*words):
+    print("compare:", *words, flush=True)
+
+
+def read_exr(path):
+    import OpenImageIO as oiio
+    pixels = oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
+    return pixels[..., :3]
+
+
+def jobs_of(grids):
+    return [{**case, "id": f"{case['id']}.{environment}", "environment": environment}
+            for grid in grids for case in grid["cases"] for environment in scene.ENVIRONMENTS]
+
+
+def render_kiln(kiln, folder, job):
+    """All seeds of one job, (seeds, SIZE, SIZE, 3), and the run's warnings."""
+    runs, warnings = [], set()
+    scene.write_gltf(folder / "case.gltf", job["gltf"])
+    for seed in range(SETTINGS["seeds"]):
+        done = subprocess.run(
+            [kiln, "render", folder / "case.gltf", "-o", folder / "case.exr", "--size", f"{scene.SIZE}x{scene.SIZE}",
+             "--spp", str(SETTINGS["spp"]), "--noise", "0", "--seed", str(seed), "--filter", "box:1",
+             "--max-depth", str(SETTINGS["depth"]), "--subdivide", "off", "--env", folder / f"{job['environment']}.hdr",
+             "--working-space", "lin_rec709"], capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(f"compare: kiln on {job['id']}: {done.stderr}")
+        warnings |= {line for line in done.stderr.splitlines() if "warning" in line}
+        runs.append(read_exr(folder / "case.exr"))
+    return np.array(runs, np.float32), warnings
+
+
+def run_kiln(kiln, folder, jobs):
+    for number, job in enumerate(jobs):
+        target = folder / f"{job['id']}.kiln.npy"
+        if target.exists():
+            continue
+        runs, warnings = render_kiln(kiln, folder, job)
+        np.save(target, runs)
+        say(f"kiln: {job['id']} ({number + 1} of {len(jobs)})", *warnings)
+
+
+def has(python, module):
+    return python and subprocess.run([python, "-c", f"import {module}"], capture_output=True).returncode == 0
+
+
+def run_peers(arguments, folder):
+    if has(arguments.mitsuba, "mitsuba"):
+        subprocess.run([arguments.mitsuba, HERE / "with_mitsuba.py", folder], check=True)
+    else:
+        say("no Mitsuba: pip install mitsuba, and name that Python by --mitsuba or KILN_MITSUBA")
+    if has(arguments.cycles, "bpy"):
+        subprocess.run([arguments.cycles, HERE / "with_cycles.py", folder], check=True)
+    elif arguments.cycles and "blender" in pathlib.Path(arguments.cycles).name:
+        subprocess.run([arguments.cycles, "-b", "--python-exit-code", "1", "--python", HERE / "with_cycles.py", "--",
+            folder],
+                       check=True)
+    else:
+        say("no Cycles: pip install bpy in an environment of its own, or Blender; name that Python, or blender,",
+            "by --cycles or KILN_CYCLES")
+
+
+def parse():
+    p = argparse.ArgumentParser(prog="script/compare-materials",
+        description="Compares kiln's materials with other renderers'")
+    p.add_argument("--kiln", default=HERE.parent.parent / "build/release/kiln", help="the program [build/release/kiln]")
+    p.add_argument("--mitsuba", default=os.environ.get("KILN_MITSUBA", sys.executable),
+                   help="a Python that has mitsuba [$KILN_MITSUBA, else this one]")
+    p.add_argument("--cycles", default=os.environ.get("KILN_CYCLES") or shutil.which("blender") or sys.executable,
+                   help="a Python that has bpy, or Blender [$KILN_CYCLES, else blender, else this Python]")
+    p.add_argument("--folder", default=HERE.parent.parent / "out/compare", type=pathlib.Path,
+                   help="where pictures are kept; what is there is not rendered again [out/compare]")
+    p.add_argument("--only", default="", help="grids, by commas; the page is not written")
+    p.add_argument("--assets", default=os.environ.get("KILN_ASSETS"), help="folder of the sample assets [$KILN_ASSETS]")
+    return p.parse_args()
+
+
+def main():
+    arguments = parse()
+    started = time.monotonic()
+    only = set(filter(None, arguments.only.split(",")))
+    grids = [g for g in cases.grids() if not only or g["id"] in only]
+    jobs = jobs_of(grids)
+    scene.write_shared(arguments.folder)
+    (arguments.folder / "jobs.json").write_text(json.dumps({"settings": SETTINGS, "jobs": jobs}))
+    run_kiln(arguments.kiln, arguments.folder, jobs)
+    run_peers(arguments, arguments.folder)
+    say(f"rendered after {time.monotonic() - started:.0f} s")
+    if only:
+        return
+    say("page:", page.write(grids, arguments.folder, HERE.parent.parent / "docs", assets.render(arguments)))
+    say(f"done after {time.monotonic() - started:.0f} s")
+
+
+main()
