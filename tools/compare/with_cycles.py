@@ -98,7 +98,7 @@ def main():
     scene, tree, world = set_up(folder, settings)
     for job in work["jobs"]:
         target = folder / f"{job['id']}.cycles.npy"
-        if job["environment"] != work["settings"]["peers_see"] or job["cycles"] is None or target.exists():
+        if job["environment"] != work["settings"]["cycles_sees"] or job["cycles"] is None or target.exists():
             continue
         tree.nodes.clear()
         output = tree.nodes.new("ShaderNodeOutputMaterial")

@@ -36,7 +36,7 @@ def main():
     work = json.loads((folder / "jobs.json").read_text())
     for job in work["jobs"]:
         target = folder / f"{job['id']}.mitsuba.npy"
-        if job["environment"] != work["settings"]["peers_see"] or job["mitsuba"] is None or target.exists():
+        if job["mitsuba"] is None or target.exists():
             continue
         world = scene(folder, job, work["settings"])
         runs = [np.array(mi.render(world, spp=work["settings"]["peers_spp"], seed=seed))[..., :3]
