@@ -35,6 +35,7 @@ KERNEL void bsdf_make_roughness(unsigned mask, bsdf *b, const surface *s) {
     b->roughness = albedo_roughness_node(s->roughness);
     if (!(mask & BSDF_LAYERED)) return;
     b->alphas.x = fm_lerp(b->alpha, 1.0f, s->anisotropy * s->anisotropy);
+    b->isotropy = 1.0f - 0.35f * (1.0f - (b->alphas.y + 1e-20f) / (b->alphas.x + 1e-20f)); /* no white metal above 1 */
     b->alpha = sqrtf(0.5f * (b->alphas.x * b->alphas.x + b->alpha * b->alpha));
     b->roughness = albedo_roughness_node(sqrtf(b->alpha));
 }
@@ -204,8 +205,10 @@ typedef struct bsdf_sampled {
     vec3 wi;
     vec3 multiplier; /* f |cos θi| / pdf over all lobes; 0: absorbed. In closed form for Lambert alone (the albedo) and
                         for deltas; a mixture divides two sums, in which each lobe's D and cosine occur alike */
-    float pdf;       /* of wi over all lobes; 0 for a delta, and where all is absorbed */
+    float pdf;       /* of wi over all lobes; 0 where evaluate does not know what was sampled: for a delta, for what is
+                        absorbed, and for a clear coat's light under the horizon of the bent surface below it */
     int delta;
+    int crosses;     /* wi lies on the far side */
 } bsdf_sampled;
 
 /* Which lobe a number in [0, 1) chooses: flags of 0 and 1, one of them 1 but for black surfaces. */
@@ -251,7 +254,7 @@ KERNEL vec3 bsdf_at_delta(unsigned mask, const bsdf *b, bsdf_choice c, vec3 wi) 
     if (mask & BSDF_LAYERED) {
         layers_pass up = layers_toward(b, wi, 0), down = layers_toward(b, wi, 1);
         float under = c.transmit ? layers_under(b, down) : layers_under(b, up);
-        float coat = b->clearcoat.near * clearcoat_fresnel(b->clearcoat.wo.z) / fm_max(b->p_clearcoat, 1e-30f);
+        float coat = b->clearcoat.gloss * clearcoat_fresnel(b->clearcoat.wo.z) / fm_max(b->p_clearcoat, 1e-30f);
         f = v3_select(c.clearcoat, v3_splat(coat), v3_scale(f, under));
     }
     return f;
@@ -261,10 +264,10 @@ KERNEL vec3 bsdf_at_delta(unsigned mask, const bsdf *b, bsdf_choice c, vec3 wi) 
 KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 direction) {
     vec3 wi = diffuse_sample(direction, 1.0f);
     if (!(mask & BSDF_GLOSSY))
-        return (bsdf_sampled){wi, v3_scale(b->diffuse, b->p_diffuse), b->p_diffuse * diffuse_pdf(wi, 1.0f), 0};
+        return (bsdf_sampled){wi, v3_scale(b->diffuse, b->p_diffuse), b->p_diffuse * diffuse_pdf(wi, 1.0f), 0, 0};
 
     bsdf_choice chosen = bsdf_choose(mask, b, lobe);
-    int straight = 0, possible = 1;
+    int straight = 0, possible = 1, hangs = 0;
     vec2 alphas = {fm_max(b->alphas.x, GGX_ALPHA_MIN), fm_max(b->alphas.y, GGX_ALPHA_MIN)};
     vec3 h = ggx_sample_normal(b->wo, alphas, direction);
     vec3 mirrored = bsdf_mirror(b->wo, v3_select(bsdf_is_mirror(b->alphas.x), v3(0, 0, 1), h));
@@ -285,7 +288,9 @@ KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 d
         wi = v3_select(chosen.clearcoat, bsdf_sample_clearcoat(b, direction), wi);
         wi = v3_select(chosen.sheen, sheen_sample(direction, b->sheen.roughness), wi);
         spread *= chosen.clearcoat ? b->clearcoat.alpha : 1.0f;
-        possible = possible & (!chosen.clearcoat | (v3_dot(wi, b->clearcoat.frame.z) > 0.0f));
+        int own = v3_dot(wi, b->clearcoat.frame.z) > 0.0f;
+        possible = possible & ((chosen.clearcoat == 0) | own);
+        hangs = chosen.clearcoat & own & (wi.z <= 0.0f);
     }
     int delta = spread < GGX_ALPHA_MIN;
     /* A microfacet may send light to the wrong side of the surface, or refuse to refract: absorbed; the energy comes
@@ -293,8 +298,14 @@ KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 d
     int lives = ((chosen.transmit | chosen.below) ? wi.z < 0.0f : wi.z > 0.0f) & possible;
     bsdf_value v = bsdf_evaluate(mask, b, wi);
     float scale = lives & (v.pdf > 0.0f) ? 1.0f / v.pdf : 0.0f;
-    vec3 at_delta = v3_scale(bsdf_at_delta(mask, b, chosen, wi), lives ? 1.0f : 0.0f);
-    return (bsdf_sampled){wi, v3_select(delta, at_delta, v3_scale(v.value, scale)), lives & !delta ? v.pdf : 0.0f, delta};
+    vec3 at_delta = v3_scale(bsdf_at_delta(mask, b, chosen, wi), lives | hangs ? 1.0f : 0.0f);
+    vec3 multiplier = v3_scale(v.value, scale);
+    if (mask & BSDF_LAYERED) { /* a clear coat has its own horizon */
+        layers_value coat = layers_evaluate(b, wi, layers_toward(b, wi, 0));
+        multiplier = v3_select(hangs, v3_scale(coat.value, 1.0f / fm_max(coat.pdf, 1e-30f)), multiplier);
+    }
+    return (bsdf_sampled){wi, v3_select(delta, at_delta, multiplier), lives & !delta & !hangs ? v.pdf : 0.0f, delta,
+                          chosen.transmit | chosen.below};
 }
 
 #endif

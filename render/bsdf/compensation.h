@@ -57,7 +57,7 @@ KERNEL vec3 bsdf_make_metal(unsigned mask, bsdf *b, const surface *s, float full
     vec3 again = v3(f.x * f.x * full_mean / (1.0f - lost.x), f.y * f.y * full_mean / (1.0f - lost.y),
                     f.z * f.z * full_mean / (1.0f - lost.z));
     again = v3_scale(again, s->metallic * (1.0f - full));
-    if (mask & BSDF_LAYERED) again = v3_scale(again, through);
+    if (mask & BSDF_LAYERED) again = v3_scale(again, through * b->isotropy);
     b->metal_again = v3_scale(again, 1.0f / fm_max(1.0f - full_mean, BSDF_LEAST_LOSS));
     if (mask & BSDF_LAYERED) b->metal_again = v3_scale(b->metal_again, 1.0f / fm_max(means->again, BSDF_LEAST_LOSS));
     return again;
@@ -66,7 +66,7 @@ KERNEL vec3 bsdf_make_metal(unsigned mask, bsdf *b, const surface *s, float full
 /* What the interface loses is shared out so that as much crosses from either side: (1 − κ_a) n_a² M_a is symmetric. */
 KERNEL bsdf_up_down bsdf_make_interface(unsigned mask, bsdf *b, float mu, float full, float full_mean) {
     float loss = bsdf_interface_loss(b, b->near_ior, mu, full);
-    if (mask & BSDF_LAYERED) loss *= 1.0f - b->film.share; /* tables know no films: rather too little than too much */
+    if (mask & BSDF_LAYERED) loss *= b->isotropy * (1.0f - 0.25f * b->film.share); /* tables know no films: rather too little than too much */
     float near_mean = bsdf_interface_mean_loss(b, b->near_ior, full_mean);
     float far_mean = bsdf_interface_mean_loss(b, b->far_ior, full_mean);
     float eta2 = b->thin > 0.5f ? 1.0f : b->eta * b->eta;

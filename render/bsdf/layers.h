@@ -54,7 +54,7 @@ KERNEL layers_value layers_evaluate(const bsdf *b, vec3 wi, layers_pass in) {
     w.z = fm_max(w.z, 0.0f);
     vec3 h = v3_normalize(v3_add(l->wo, w));
     float alpha = fm_max(l->alpha, GGX_ALPHA_MIN), c = v3_dot(l->wo, h);
-    float gloss = l->near * clearcoat_fresnel(c) * ggx_reflection_value(l->wo, w, h, (vec2){alpha, alpha});
+    float gloss = l->gloss * clearcoat_fresnel(c) * ggx_reflection_value(l->wo, w, h, (vec2){alpha, alpha});
     float under = fm_min(in.clearcoat, l->through);
     vec3 sheen = v3_scale(b->sheen.color, under * sheen_value(b->wo, wi, b->sheen.roughness));
     float pdf = live ? b->p_clearcoat * clearcoat_pdf(l, h) : 0.0f;
@@ -65,6 +65,7 @@ KERNEL void layers_make(bsdf *b, const surface *s) {
     bsdf_clearcoat *l = &b->clearcoat;
     l->near = s->clearcoat * s->near;
     l->far = s->clearcoat * s->far;
+    l->gloss = l->near;
     l->alpha = s->clearcoat_roughness * s->clearcoat_roughness;
     l->roughness = albedo_roughness_node(s->clearcoat_roughness);
     l->frame = frame_make(s->clearcoat_normal);

@@ -17,7 +17,7 @@ static inline bsdf bsdf_without(const bsdf *b, kiln_lobe lobe) {
     bsdf rest = *b;
     switch (lobe) {
     case KILN_LOBE_DIFFUSE: rest.diffuse = v3_splat(0.0f); break;
-    case KILN_LOBE_CLEARCOAT: rest.clearcoat.near = 0.0f; break; /* what it lets through stays */
+    case KILN_LOBE_CLEARCOAT: rest.clearcoat.gloss = 0.0f; break;
     case KILN_LOBE_SHEEN: rest.sheen.color = v3_splat(0.0f); break;
     case KILN_LOBE_TRANSLUCENCY: rest.passes = v3_splat(0.0f); break;
     case KILN_LOBE_EMISSION:
@@ -49,10 +49,10 @@ static inline bsdf_parts bsdf_shares(unsigned mask, const bsdf *b, vec3 wi) {
 /* Of the direction that bsdf_sample chooses with these numbers. */
 static inline bsdf_parts bsdf_shares_of_sample(unsigned mask, const bsdf *b, float lobe, vec2 direction) {
     bsdf_sampled next = bsdf_sample(mask, b, lobe, direction);
-    if (!next.delta) return bsdf_shares(mask, b, next.wi);
+    if (next.pdf > 0.0f) return bsdf_shares(mask, b, next.wi);
     bsdf_parts shares = {0};
     int clearcoat = mask & BSDF_LAYERED && bsdf_choose(mask, b, lobe).clearcoat;
-    kiln_lobe delta = next.wi.z < 0.0f ? KILN_LOBE_TRANSMISSION : clearcoat ? KILN_LOBE_CLEARCOAT : KILN_LOBE_SPECULAR;
+    kiln_lobe delta = next.crosses ? KILN_LOBE_TRANSMISSION : clearcoat ? KILN_LOBE_CLEARCOAT : KILN_LOBE_SPECULAR;
     shares.of[delta] = v3_splat(1.0f);
     return shares;
 }

@@ -53,7 +53,8 @@ typedef struct surface {
 
 /* A clear coat as wo sees it. */
 typedef struct bsdf_clearcoat {
-    float near, far; /* its share on wo's side and on the far side */
+    float near, far; /* its share on wo's side and on the far side: what it takes from what it covers */
+    float gloss;     /* its share in what it reflects: near, but where parts of the picture leave it out */
     float alpha;
     albedo_node roughness;
     frame frame;     /* around its own normal */
@@ -82,6 +83,7 @@ typedef struct bsdf {
     vec2 alphas;                    /* along x and y; x is the larger */
     float alpha;                    /* that tables are asked for */
     albedo_node roughness;
+    float isotropy;                 /* 1, and less where tables of one alpha would give back too much */
     vec3 diffuse;                   /* base · what its coat lets in at wo / the mean of that */
     vec3 metal_again;               /* multiple scattering of the metal, but for its factor at wi */
     vec3 f0;                        /* the dielectric's, at normal incidence */

@@ -29,8 +29,9 @@ KERNEL flight flight_sample(vec3 extinction, vec3 albedo, vec3 throughput, float
     float sum = throughput.x + throughput.y + throughput.z, inverse = sum > 0.0f ? 1.0f / sum : 0.0f;
     vec3 q = v3_select(sum > 0.0f, v3_scale(throughput, inverse), v3_splat(1.0f / 3.0f));
     float chosen = channel < q.x ? extinction.x : channel < q.x + q.y ? extinction.y : extinction.z;
-    float drawn = -fm_log(1.0f - distance) / fm_max(chosen, 1e-30f); /* a clear channel: as good as infinity */
-    int scatters = drawn < limit;
+    /* A clear channel does not scatter. */
+    float drawn = -fm_log(1.0f - distance) / fm_max(chosen, 1e-30f);
+    int scatters = (drawn < limit) & (chosen > 0.0f);
     float d = scatters ? drawn : limit;
     vec3 left = v3(fm_exp(-extinction.x * d), fm_exp(-extinction.y * d), fm_exp(-extinction.z * d));
     vec3 densities = v3_select(scatters, v3_mul(left, extinction), left);

@@ -29,7 +29,8 @@ KERNEL surface lane_surface(unsigned mask, const path_scratch *x, uint32_t i) {
         s.sheen = v3(x->sheen_r[i], x->sheen_g[i], x->sheen_b[i]);
         s.sheen_roughness = x->sheen_roughness[i];
         s.diffuse_transmission = x->pass[i];
-        s.diffuse_transmission_color = v3(x->pass_r[i], x->pass_g[i], x->pass_b[i]);
+        s.diffuse_transmission_color = v3_mul(v3(x->pass_r[i], x->pass_g[i], x->pass_b[i]),
+                                              v3(x->hue_r[i], x->hue_g[i], x->hue_b[i]));
         s.along = v3(x->along_x[i], x->along_y[i], x->along_z[i]);
     }
     return s;

@@ -78,7 +78,7 @@ typedef struct shading_scattering {
 KERNEL shading_scattering shading_scatter(unsigned mask, const shading *s, vec3 throughput, float lobe, vec2 direction) {
     bsdf_sampled next = bsdf_sample(mask, &s->bsdf, lobe, direction);
     vec3 wi = v3_normalize(frame_to_world(&s->frame, next.wi));
-    int crosses = next.wi.z < 0.0f;
+    int crosses = next.crosses;
     float far = mask & BSDF_TRANSMISSIVE && crosses ? 1.0f : 0.0f, sign = 1.0f - 2.0f * far;
     /* How far wi lies on the wrong side, by the plane and, where it crosses, by the facet too: products, for branches
      * would keep loops scalar. */

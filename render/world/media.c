@@ -80,7 +80,8 @@ static void find_scales(const kiln_scene *scene, double *scales) {
 static vec3 extinction_of(const world *w, const kiln_decoding *decoding, const kiln_material *m) {
     if (!(m->attenuation_distance > 0)) return v3_splat(0);
     vec3 left = decoding_apply(decoding, KILN_TRANSFER_LINEAR, m->attenuation_color);
-    float per_unit = 1.0f / (m->attenuation_distance * (float)w->scale);
+    /* A distance next to nothing is black: finite, or a clear channel would be 0 · ∞. */
+    float per_unit = fminf(1.0f / (m->attenuation_distance * (float)w->scale), 1e30f);
     const float least = 1e-9f; /* a colour of 0 absorbs all but a billionth over the distance */
     return v3(-logf(fminf(fmaxf(left.x, least), 1.0f)) * per_unit, -logf(fminf(fmaxf(left.y, least), 1.0f)) * per_unit,
               -logf(fminf(fmaxf(left.z, least), 1.0f)) * per_unit);

@@ -295,6 +295,7 @@ static void bound(const path_context *c, const path *p, const hit *h, surface *s
             medium_boundary_at(w->media, m->medium, p->media, h->beyond, h->p.front > 0.5f, line.wavelength);
         bool takes = !at.hidden && w->media[medium_top(h->beyond)].spread > 0 && !p->dispersed;
         s->through = takes ? v3_mul(s->base, line.weight) : s->base;
+        if (takes) s->diffuse_transmission_color = v3_mul(s->diffuse_transmission_color, line.weight);
         s->eta = at.eta;
         s->f0 = normal_reflectance(m, at.eta);
         if (!at.hidden) return;

@@ -108,11 +108,11 @@ static void check_counts(setting *s, double tests) {
     tally means[3] = {{0}};
     for (int n = 0; n < SAMPLES; n++) {
         bsdf_sampled r = draw(s, &s->random);
-        bool lost = r.delta || is_absorbed(s, &r);
+        bool lost = !(r.pdf > 0) || is_absorbed(s, &r);
         counts[lost ? CHART_CELLS : chart_cell(&c, (dvec3){(double)r.wi.x, (double)r.wi.y, (double)r.wi.z})]++;
-        tally_add(&means[0], r.delta ? 0 : (double)r.multiplier.x);
-        tally_add(&means[1], r.delta ? 0 : (double)r.multiplier.y);
-        tally_add(&means[2], r.delta ? 0 : (double)r.multiplier.z);
+        tally_add(&means[0], r.pdf > 0 ? (double)r.multiplier.x : 0);
+        tally_add(&means[1], r.pdf > 0 ? (double)r.multiplier.y : 0);
+        tally_add(&means[2], r.pdf > 0 ? (double)r.multiplier.z : 0);
     }
     for (int i = 0; i < CHART_CELLS; i++) all += e.pdf[i], wanted[i] = SAMPLES * e.pdf[i];
     wanted[CHART_CELLS] = SAMPLES * fmax(1 - all, 0);
@@ -168,7 +168,7 @@ static void check_one_by_one(setting *s, double tests) {
             if (r.pdf != 0 || difference > 2e-3f * largest(v.value) || fabsf(v.pdf - beside.pdf) > 2e-3f * v.pdf)
                 complain(s, "evaluate knows a delta: value %g, %g beside it; pdf %g, %g", (double)largest(v.value),
                          (double)largest(beside.value), (double)v.pdf, (double)beside.pdf);
-        } else if (!r.delta && !is_absorbed(s, &r)) {
+        } else if (r.pdf > 0 && !is_absorbed(s, &r)) {
             float off = largest(v3_abs(v3_sub(v3_scale(r.multiplier, r.pdf), v.value)));
             if (v.pdf != r.pdf || !(v.pdf > 0) || off > 1e-6f * largest(v.value))
                 complain(s, "multiplier · pdf misses the value by %g of %g; pdf %g, %g", (double)off,
@@ -192,7 +192,7 @@ static void check_naive_form(setting *s, double tests) {
     for (int n = 0; n < SAMPLES; n++) {
         bsdf_sampled r = draw(s, &s->random);
         bsdf_value v = probe_evaluate(&s->probe, stream_direction(&s->random));
-        tally_add(&combined, r.delta ? 0 : (double)average(r.multiplier));
+        tally_add(&combined, r.pdf > 0 ? (double)average(r.multiplier) : 0);
         tally_add(&naive, 4 * M_PI * (double)average(v.value));
     }
     double error = hypot(tally_error(&naive), tally_error(&combined)) + 1e-12;
