@@ -35,7 +35,7 @@ KERNEL void bsdf_make_roughness(unsigned mask, bsdf *b, const surface *s) {
     b->roughness = albedo_roughness_node(s->roughness);
     if (!(mask & BSDF_LAYERED)) return;
     b->alphas.x = fm_lerp(b->alpha, 1.0f, s->anisotropy * s->anisotropy);
-    b->isotropy = 1.0f - 0.35f * (1.0f - (b->alphas.y + 1e-20f) / (b->alphas.x + 1e-20f)); /* no white metal above 1 */
+    b->isotropy = 1.0f - 0.4f * (1.0f - (b->alphas.y + 1e-20f) / (b->alphas.x + 1e-20f)); /* no white metal above 1 */
     b->alpha = sqrtf(0.5f * (b->alphas.x * b->alphas.x + b->alpha * b->alpha));
     b->roughness = albedo_roughness_node(sqrtf(b->alpha));
 }

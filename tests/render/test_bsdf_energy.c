@@ -87,7 +87,7 @@ static void check_albedo(const subject *s, int r, int k) {
     if (r > 0 && s->row->transmission > 0 && cosines[k] < 0.05f) tolerance = OFF_GRAZING;
     double kept_back = r == 0 ? 0 : withheld(s, roughnesses[r], cosines[k]), missed = tolerance + (double)s->row->off_white;
     double off_aov = (mirror || s->row->white ? missed : OFF_AOV) + kept_back;
-    double over = s->row->film > 0 ? 2 * OFF_WHITE : tolerance, least_white = 1 - missed - kept_back;
+    double over = s->row->film > 0 || s->row->anisotropy > 0 ? 2 * OFF_WHITE : tolerance, least_white = 1 - missed - kept_back;
     if (!(most <= 1 + over) || !(least >= 0) || (s->row->white && !(least >= least_white)))
         fail_msg("%s, roughness %g, cos %g: albedo %.5f %.5f %.5f", s->row->name, (double)roughnesses[r],
                  (double)cosines[k], a.x, a.y, a.z);
