@@ -7,9 +7,8 @@ Written by `script/compare-materials`, which renders everything on this page: ch
 
 A sphere of radius 1 (65,000 triangles with exact normals, the same for all), seen by an orthographic camera, 64 × 64
 pixels, in one of two worlds: 'white' is 1 everywhere, so that what comes back is the share of light that is not lost;
-'boxes' is a grey room with a white and a warm soft box. kiln takes 4 × 64 samples a pixel, Mitsuba 3 and Cycles 4 ×
-32, each
-of the four with a seed of its own. Figures are means over all pixels that see nothing but the sphere; ± is half of the
+'boxes' is a grey room with a white and a warm soft box. kiln takes 4 × 64 samples a pixel, Mitsuba 3 and Cycles
+4 × 32 (Mitsuba's glass here 4 × 64), each of the four with a seed of its own. Figures are means over all pixels that see nothing but the sphere; ± is half of the
 95 % confidence interval, by Student's t of the four. A ratio is that of the colour channel which is furthest off.
 
 **Formula** stands for `tools/compare/exact.py`: the same mean by quadrature from the formulas of the papers, with no
