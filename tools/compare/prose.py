@@ -104,7 +104,7 @@ as narrow as it
 was, where kiln spreads it over both hemispheres; see rough metal, where the formula shows the same. At roughness 0
 and 0.1
 they agree. This one is reasoned, not computed: no formula here follows light through a rough sphere."""),
-    (("anisotropy",), ("formula", "mitsuba"), "", 1.02, 2.0, """**kiln is too bright here.** Its compensation of
+    (("anisotropy",), ("formula", "mitsuba"), "", 1.02, 2.1, """**kiln is too bright here.** Its compensation of
 multiple scattering takes the tables of an isotropic surface, and at strength 1 gives back more than was lost: a white
 metal returns 6 to 8 % more than came. Single scattering is right, as the smaller strengths show."""),
     (("sheen",), ("cycles",), "", 0.2, 5.0, """Another model, as said above. kiln's is where its formula says."""),
