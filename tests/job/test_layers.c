@@ -125,10 +125,11 @@ static layers shoot(fixture *f, const char *const *options) {
 static void parts_sum_to_the_picture(void **state) {
     layers l = shoot(*state, (const char *const[]){"aov", "direct,emission,indirect,lobe:*,lightgroup:*", NULL});
     sum_to_the_picture(&l, (const char *const[]){"emission", "direct", "indirect", NULL});
-    sum_to_the_picture(&l, (const char *const[]){"specular", "transmission", "emission", "diffuse", NULL});
+    sum_to_the_picture(&l, (const char *const[]){"specular", "transmission", "emission", "diffuse", "clearcoat", "sheen",
+                                                 "translucency", NULL});
     sum_to_the_picture(&l, (const char *const[]){"lightgroup_environment", "lightgroup_Key_001",
                                                  "lightgroup_material_4", NULL});
-    assert_int_equal(l.count, 3 * (1 + 3 + 3 + 3));
+    assert_int_equal(l.count, 3 * (1 + 3 + 6 + 3));
     forget(&l);
 }
 
