@@ -183,7 +183,7 @@ static void ids_are_finite(void **state) {
     assert_int_equal(kiln_matte_id("default"), 0x42c9679f);
     int moved = 0;
     for (int i = 0; i < 4000; i++) {
-        char name[16];
+        char name[24];
         snprintf(name, sizeof name, "thing %d", i);
         float f = fm_from_bits(kiln_matte_id(name));
         assert_true(isnormal(f));
