@@ -90,10 +90,11 @@ static texel_domain domain_of(material_slot slot) {
 }
 
 /* What may be averaged: where coverage decides what is seen of a texel, its neighbours would bleed into it; emission
- * is sampled by lights too, without a footprint; the mean of normals is no normal of a rougher surface. */
+ * is sampled by lights too, without a footprint; the mean of normals, or of directions, is none of a rougher surface. */
 static bool is_filtered(const kiln_material *m, const slot_use *use) {
     return m->alpha_mode == KILN_ALPHA_OPAQUE && use->texture->filter == KILN_FILTER_LINEAR &&
-           use->slot != SLOT_EMISSION && use->slot != SLOT_OPACITY && use->slot != SLOT_NORMAL;
+           use->slot != SLOT_EMISSION && use->slot != SLOT_OPACITY && use->slot != SLOT_NORMAL &&
+           use->slot != SLOT_CLEARCOAT_NORMAL && use->slot != SLOT_ANISOTROPY;
 }
 
 static bool is_identity(const float m[9]) {

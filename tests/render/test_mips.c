@@ -173,7 +173,7 @@ static void bounces_change_cones(void **state) {
     assert_float_equal(cone_scatter(at, &b).spread, 0.01f + CONE_SHARE * 0.01f, 1e-6f);
 }
 
-/* Of one picture in every role: coverage, emission, normals and nearest texels are never averaged. */
+/* Of one picture in every role: coverage, emission, normals, directions and nearest texels are never averaged. */
 static void some_textures_are_left_alone(void **state) {
     (void)state;
     const struct { kiln_alpha_mode alpha; kiln_filter filter; kiln_texture_filter wanted; int role; bool has; } rows[] = {
@@ -183,16 +183,20 @@ static void some_textures_are_left_alone(void **state) {
         {KILN_ALPHA_MASK, KILN_FILTER_LINEAR, KILN_TEXTURES_MIP, 0, false},
         {KILN_ALPHA_BLEND, KILN_FILTER_LINEAR, KILN_TEXTURES_MIP, 0, false},
         {KILN_ALPHA_OPAQUE, KILN_FILTER_LINEAR, KILN_TEXTURES_MIP, 1, false},
-        {KILN_ALPHA_OPAQUE, KILN_FILTER_LINEAR, KILN_TEXTURES_MIP, 2, false}};
+        {KILN_ALPHA_OPAQUE, KILN_FILTER_LINEAR, KILN_TEXTURES_MIP, 2, false},
+        {KILN_ALPHA_OPAQUE, KILN_FILTER_LINEAR, KILN_TEXTURES_MIP, 3, false},
+        {KILN_ALPHA_OPAQUE, KILN_FILTER_LINEAR, KILN_TEXTURES_MIP, 4, false}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         scene_builder b = builder_make();
         const float rgb[12] = {0.1f, 0.2f, 0.3f, 0.4f};
         kiln_material m = diffuse_material(1, 1, 1);
-        kiln_texture *t = rows[i].role == 0 ? &m.base_color.texture : rows[i].role == 1 ? &m.emission.texture : &m.normal.texture;
-        m.emission.value[0] = 1;
+        kiln_texture *const roles[] = {&m.base_color.texture, &m.emission.texture, &m.normal.texture,
+                                       &m.clearcoat_normal.texture, &m.anisotropy.texture}, *t = roles[rows[i].role];
+        m.layers = KILN_LAYER_CLEARCOAT | KILN_LAYER_ANISOTROPY;
+        m.clearcoat.value = m.anisotropy.value = m.emission.value[0] = 1;
         m.alpha_mode = rows[i].alpha;
         *t = (kiln_texture){.image = add_image(&b, rgb, 2, 2), .filter = rows[i].filter,
-                            .transfer = rows[i].role == 2 ? KILN_TRANSFER_DATA : KILN_TRANSFER_LINEAR};
+                            .transfer = rows[i].role >= 2 ? KILN_TRANSFER_DATA : KILN_TRANSFER_LINEAR};
         add_quad(&b, add_material(&b, &m), (float[]){0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
         must(kiln_scene_commit(b.scene, b.report), b.report, "committing");
         kiln_decoding decoding;
