@@ -1,5 +1,6 @@
 #include "render/path/cone.h"
 #include "render/path/stages.h"
+#include "render/world/lookup.h"
 
 static void load_diffuse(const world *w, path_scratch *x, uint32_t i) {
     const world_material *m = &w->materials[x->material[i]];
@@ -44,39 +45,32 @@ static void load_layers(const world *w, path_scratch *x, uint32_t i) {
     x->pass_r[i] = pass[0], x->pass_g[i] = pass[1], x->pass_b[i] = pass[2];
 }
 
-static void tint_by_vertices(const world *w, const path_hit *h, path_scratch *x, uint32_t n) {
-    for (uint32_t i = 0; i < n; i++) {
-        const uint32_t *v = w->triangles + 3 * (size_t)h->triangle[i];
-        const float *a = w->colors + 4 * (size_t)v[0], *p = w->colors + 4 * (size_t)v[1], *q = w->colors + 4 * (size_t)v[2];
-        float b1 = h->u[i], b2 = h->v[i], b0 = 1.0f - b1 - b2, rgb[3];
-        for (int k = 0; k < 3; k++) rgb[k] = b0 * a[k] + b1 * p[k] + b2 * q[k];
-        bool unlit = w->materials[x->material[i]].flags & MATERIAL_UNLIT; /* its base colour is what it emits */
-        float *r = unlit ? x->emit_r : x->base_r, *g = unlit ? x->emit_g : x->base_g, *b = unlit ? x->emit_b : x->base_b;
-        r[i] *= rgb[0], g[i] *= rgb[1], b[i] *= rgb[2];
-    }
+/* The first three of an attribute that has four values a vertex. */
+static vec3 interpolate(const world *w, const path_hit *h, uint32_t i, const float *values) {
+    const uint32_t *v = w->triangles + 3 * (size_t)h->triangle[i];
+    vec3 a = v3_load(values + 4 * (size_t)v[0]), p = v3_load(values + 4 * (size_t)v[1]), q = v3_load(values + 4 * (size_t)v[2]);
+    float b1 = h->u[i], b2 = h->v[i];
+    return v3_madd(v3_madd(v3_scale(a, 1.0f - b1 - b2), b1, p), b2, q);
 }
 
-/* UV of a set that the vertices do not carry themselves. */
-static vec2 further_uv(const world *w, const path_hit *h, uint32_t i, uint32_t set) {
-    const uint32_t *v = w->triangles + 3 * (size_t)h->triangle[i];
-    const float *uv = w->uvs[set], *a = uv + 2 * (size_t)v[0], *p = uv + 2 * (size_t)v[1], *q = uv + 2 * (size_t)v[2];
-    float b1 = h->u[i], b2 = h->v[i], b0 = 1.0f - b1 - b2;
-    return (vec2){b0 * a[0] + b1 * p[0] + b2 * q[0], b0 * a[1] + b1 * p[1] + b2 * q[1]};
+static void tint_by_vertices(const world *w, const path_hit *h, path_scratch *x, uint32_t n) {
+    for (uint32_t i = 0; i < n; i++) {
+        vec3 rgb = interpolate(w, h, i, w->colors);
+        bool unlit = w->materials[x->material[i]].flags & MATERIAL_UNLIT; /* its base colour is what it emits */
+        float *r = unlit ? x->emit_r : x->base_r, *g = unlit ? x->emit_g : x->base_g, *b = unlit ? x->emit_b : x->base_b;
+        r[i] *= rgb.x, g[i] *= rgb.y, b[i] *= rgb.z;
+    }
 }
 
 /* The tangent that normal maps and directions are relative to. */
 static void load_tangent(const world *w, const path_hit *h, path_scratch *x, uint32_t i) {
     x->tan_x[i] = x->tan_y[i] = x->tan_z[i] = x->tan_w[i] = 0.0f;
     if (!w->tangents) return;
-    const uint32_t *v = w->triangles + 3 * (size_t)h->triangle[i];
-    const float *a = w->tangents + 4 * (size_t)v[0], *p = w->tangents + 4 * (size_t)v[1], *q = w->tangents + 4 * (size_t)v[2];
-    float b1 = h->u[i], b2 = h->v[i], b0 = 1.0f - b1 - b2, t[3];
-    for (int k = 0; k < 3; k++) t[k] = b0 * a[k] + b1 * p[k] + b2 * q[k];
     const world_instance *copy = &w->instances[h->instance[i]];
-    vec3 tangent = v3_load(t);
+    vec3 tangent = interpolate(w, h, i, w->tangents);
     if (h->instance[i]) tangent = world_instance_vector(copy, tangent);
     x->tan_x[i] = tangent.x, x->tan_y[i] = tangent.y, x->tan_z[i] = tangent.z;
-    x->tan_w[i] = a[3] * copy->side;
+    x->tan_w[i] = w->tangents[4 * (size_t)w->triangles[3 * (size_t)h->triangle[i]] + 3] * copy->side;
 }
 
 /* What the path's cone covers of a UV set. */
@@ -102,59 +96,56 @@ static void apply_anisotropy(const world_material *m, path_scratch *x, uint32_t 
     x->along_v[i] = u * m->anisotropy_y + v * m->anisotropy_x;
 }
 
+/* A texture as one lane sees it. */
+typedef struct view { const world_texture *texture; vec2 uv; int32_t level; } view;
+
+static texel texel_of(const view *t) { return texture_sample_level(t->texture, t->uv.x, t->uv.y, t->level); }
+static float channel_of(const view *t) { return texture_channel_level(t->texture, t->uv.x, t->uv.y, t->level); }
+
+static void tint(const view *t, float *r, float *g, float *b) {
+    texel c = texel_of(t);
+    *r *= c.r, *g *= c.g, *b *= c.b;
+}
+static void bend(const view *t, float scale, float *x, float *y, float *z) {
+    vec3 n = map_of(texel_of(t), scale);
+    *x = n.x, *y = n.y, *z = n.z;
+}
+
 static void apply_texture(const world *w, const path_hit *h, path_scratch *x, uint32_t i, material_slot slot,
-                          const world_texture *t) {
+                          const world_texture *texture) {
     const world_material *m = &w->materials[x->material[i]];
-    vec2 uv = t->uv_set ? further_uv(w, h, i, t->uv_set) : (vec2){x->tu[i], x->tv[i]};
-    int32_t level = t->levels ? texture_level(t, footprint(w, h, x, i, t->uv_set)) : 0;
-    texel c;
-    vec3 n;
+    uint32_t set = texture->uv_set;
+    vec2 at = {h->u[i], h->v[i]}, uv = set ? lookup_uv(w, h->triangle[i], set, at) : (vec2){x->tu[i], x->tv[i]};
+    view t = {texture, uv, texture->levels ? texture_level(texture, footprint(w, h, x, i, set)) : 0};
     switch (slot) {
-    case SLOT_BASE:
-        c = texture_sample_level(t, uv.x, uv.y, level);
-        x->base_r[i] *= c.r, x->base_g[i] *= c.g, x->base_b[i] *= c.b;
-        break;
-    case SLOT_EMISSION:
-        c = texture_sample_level(t, uv.x, uv.y, level);
-        x->emit_r[i] *= c.r, x->emit_g[i] *= c.g, x->emit_b[i] *= c.b;
-        break;
-    case SLOT_SPECULAR_COLOR:
-        c = texture_sample_level(t, uv.x, uv.y, level);
-        x->tint_r[i] *= c.r, x->tint_g[i] *= c.g, x->tint_b[i] *= c.b;
-        break;
-    case SLOT_METALLIC: x->metallic[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_BASE: tint(&t, &x->base_r[i], &x->base_g[i], &x->base_b[i]); break;
+    case SLOT_EMISSION: tint(&t, &x->emit_r[i], &x->emit_g[i], &x->emit_b[i]); break;
+    case SLOT_SPECULAR_COLOR: tint(&t, &x->tint_r[i], &x->tint_g[i], &x->tint_b[i]); break;
+    case SLOT_SHEEN_COLOR: tint(&t, &x->sheen_r[i], &x->sheen_g[i], &x->sheen_b[i]); break;
+    case SLOT_DIFFUSE_TRANSMISSION_COLOR: tint(&t, &x->pass_r[i], &x->pass_g[i], &x->pass_b[i]); break;
+    case SLOT_METALLIC: x->metallic[i] *= channel_of(&t); break;
     case SLOT_ROUGHNESS:
-        x->roughness[i] *= texture_channel_level(t, uv.x, uv.y, level);
+        x->roughness[i] *= channel_of(&t);
         if (m->flags & MATERIAL_GLOSSINESS) x->roughness[i] = 1.0f - x->roughness[i];
         break;
-    case SLOT_SPECULAR: x->specular[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
-    case SLOT_TRANSMISSION: x->transmission[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
+    case SLOT_SPECULAR: x->specular[i] *= channel_of(&t); break;
+    case SLOT_TRANSMISSION: x->transmission[i] *= channel_of(&t); break;
+    case SLOT_CLEARCOAT: x->clearcoat[i] *= channel_of(&t); break;
+    case SLOT_CLEARCOAT_ROUGHNESS: x->clearcoat_roughness[i] *= channel_of(&t); break;
+    case SLOT_SHEEN_ROUGHNESS: x->sheen_roughness[i] *= channel_of(&t); break;
+    case SLOT_FILM: x->film[i] *= channel_of(&t); break;
+    case SLOT_FILM_THICKNESS:
+        x->film_thickness[i] = fm_lerp(m->film_thickness[0], m->film_thickness[1], channel_of(&t));
+        break;
+    case SLOT_DIFFUSE_TRANSMISSION: x->pass[i] *= channel_of(&t); break;
     case SLOT_NORMAL:
-        n = map_of(texture_sample_level(t, uv.x, uv.y, level), m->normal_scale);
-        x->map_x[i] = n.x, x->map_y[i] = n.y, x->map_z[i] = n.z;
+        bend(&t, m->normal_scale, &x->map_x[i], &x->map_y[i], &x->map_z[i]);
         load_tangent(w, h, x, i);
         break;
-    case SLOT_CLEARCOAT: x->clearcoat[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
-    case SLOT_CLEARCOAT_ROUGHNESS: x->clearcoat_roughness[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
     case SLOT_CLEARCOAT_NORMAL:
-        n = map_of(texture_sample_level(t, uv.x, uv.y, level), m->clearcoat_normal_scale);
-        x->coat_x[i] = n.x, x->coat_y[i] = n.y, x->coat_z[i] = n.z;
+        bend(&t, m->clearcoat_normal_scale, &x->coat_x[i], &x->coat_y[i], &x->coat_z[i]);
         break;
-    case SLOT_SHEEN_COLOR:
-        c = texture_sample_level(t, uv.x, uv.y, level);
-        x->sheen_r[i] *= c.r, x->sheen_g[i] *= c.g, x->sheen_b[i] *= c.b;
-        break;
-    case SLOT_SHEEN_ROUGHNESS: x->sheen_roughness[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
-    case SLOT_ANISOTROPY: apply_anisotropy(m, x, i, texture_sample_level(t, uv.x, uv.y, level)); break;
-    case SLOT_FILM: x->film[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
-    case SLOT_FILM_THICKNESS:
-        x->film_thickness[i] = fm_lerp(m->film_thickness[0], m->film_thickness[1], texture_channel_level(t, uv.x, uv.y, level));
-        break;
-    case SLOT_DIFFUSE_TRANSMISSION: x->pass[i] *= texture_channel_level(t, uv.x, uv.y, level); break;
-    case SLOT_DIFFUSE_TRANSMISSION_COLOR:
-        c = texture_sample_level(t, uv.x, uv.y, level);
-        x->pass_r[i] *= c.r, x->pass_g[i] *= c.g, x->pass_b[i] *= c.b;
-        break;
+    case SLOT_ANISOTROPY: apply_anisotropy(m, x, i, texel_of(&t)); break;
     case SLOT_OPACITY:
     case SLOT_COUNT: break;
     }
