@@ -114,13 +114,9 @@ KERNEL vec3 bsdf_albedo(unsigned mask, const bsdf *b) {
     if (!(mask & BSDF_GLOSSY)) return b->wide;
     float mu = bsdf_table_mu(mask, b, b->wo), full = bsdf_full(mu, b->alpha, b->roughness);
     float share = bsdf_schlick_share(mu, b->alpha, b->roughness), facing = b->wo.z + b->alpha * (1.0f - b->wo.z);
-    vec3 sum = v3_scale(v3_madd(b->reflect0, share, b->reflect1), full);
-    if (mask & BSDF_LAYERED) {
-        thin_film t = bsdf_film_at(b, 1.0f - fm_pow(share, 0.2f));
-        vec3 on_metal = v3_scale(thin_film_reflectance(&t, b->film.metal_f0), b->film.metal);
-        vec3 films = v3_madd(on_metal, b->film.dielectric, thin_film_reflectance(&t, b->f0));
-        sum = v3_lerp(sum, v3_scale(films, full), b->film.share);
-    }
+    vec3 sum = v3_madd(b->reflect0, share, b->reflect1);
+    if (mask & BSDF_LAYERED) sum = bsdf_filmed(b, bsdf_mean_cosine(share), sum);
+    sum = v3_scale(sum, full);
     if (mask & BSDF_TRANSMISSIVE) {
         vec3 f = bsdf_interface_fresnel(mask, b, facing), passes = v3_mul(b->tint, complement(f));
         float kept = 1.0f - bsdf_interface_loss(b, b->near_ior, mu, full);

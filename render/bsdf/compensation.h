@@ -25,7 +25,7 @@ KERNEL vec3 bsdf_divide(vec3 a, vec3 mean) {
     return v3(a.x / fm_max(mean.x, BSDF_LEAST_LOSS), a.y / fm_max(mean.y, BSDF_LEAST_LOSS), a.z / fm_max(mean.z, BSDF_LEAST_LOSS));
 }
 
-/* The base under its coat, and under layers. means: NULL where there are none; through: what they let through at wo. */
+/* The base under its coat, and under layers. means, through: theirs, the latter at wo; read under BSDF_LAYERED. */
 KERNEL bsdf_up_down bsdf_make_base(unsigned mask, bsdf *b, const surface *s, float opaque, float mu, float full,
                                   float full_mean, const layers_means *means, float through) {
     vec3 enters = v3_scale(complement(bsdf_coat_albedo(mask, b, mu, full)), opaque);
@@ -66,7 +66,8 @@ KERNEL vec3 bsdf_make_metal(unsigned mask, bsdf *b, const surface *s, float full
 /* What the interface loses is shared out so that as much crosses from either side: (1 − κ_a) n_a² M_a is symmetric. */
 KERNEL bsdf_up_down bsdf_make_interface(unsigned mask, bsdf *b, float mu, float full, float full_mean) {
     float loss = bsdf_interface_loss(b, b->near_ior, mu, full);
-    if (mask & BSDF_LAYERED) loss *= b->isotropy * (1.0f - 0.25f * b->film.share); /* tables know no films: rather too little than too much */
+    /* Tables know no films: rather too little than too much. */
+    if (mask & BSDF_LAYERED) loss *= b->isotropy * (1.0f - 0.25f * b->film.share);
     float near_mean = bsdf_interface_mean_loss(b, b->near_ior, full_mean);
     float far_mean = bsdf_interface_mean_loss(b, b->far_ior, full_mean);
     float eta2 = b->thin > 0.5f ? 1.0f : b->eta * b->eta;

@@ -13,6 +13,12 @@ KERNEL float fresnel_schlick_weight(float c) {
     return m2 * m2 * m;
 }
 
+/* At normal incidence: ((η − 1)/(η + 1))², the same from either side. */
+KERNEL float fresnel_normal(float eta) {
+    float root = (eta - 1.0f) / (eta + 1.0f);
+    return root * root;
+}
+
 /* Unpolarised reflectance of a dielectric: c = cos of the incident angle ≥ 0, eta = n_far / n_near.
  * F = ½ ((g − c)/(g + c))² (1 + ((c (g + c) − 1)/(c (g − c) + 1))²), g² = η² − 1 + c² (Cook and Torrance 1982);
  * 1 under total internal reflection. */

@@ -8,7 +8,7 @@
 
 /* The interface's exact Fresnel term, stretched between the material's F0 and F90; 1 under total reflection. */
 KERNEL vec3 bsdf_exact_fresnel(const bsdf *b, float c) {
-    float root = (b->eta - 1.0f) / (b->eta + 1.0f), exact0 = root * root; /* < 1: eta is finite */
+    float exact0 = fresnel_normal(b->eta); /* < 1: eta is finite */
     float f = fresnel_dielectric(c, b->eta), shape = (f - exact0) / (1.0f - exact0);
     shape = shape > 0.0f ? shape : 0.0f;
     vec3 scaled = v3_madd(b->f0, shape, v3_sub(v3_splat(b->f90), b->f0));
@@ -32,15 +32,17 @@ KERNEL vec3 bsdf_interface_fresnel(unsigned mask, const bsdf *b, float c) {
     return v3_select(total, exact, v3_lerp(exact, thin_film_reflectance(&f, b->f0), b->film.share));
 }
 
+/* The film instead of f, the Fresnel term of metal and coat, by its share. */
+KERNEL vec3 bsdf_filmed(const bsdf *b, float c, vec3 f) {
+    thin_film t = bsdf_film_at(b, c);
+    vec3 on_metal = v3_scale(thin_film_reflectance(&t, b->film.metal_f0), b->film.metal);
+    return v3_lerp(f, v3_madd(on_metal, b->film.dielectric, thin_film_reflectance(&t, b->f0)), b->film.share);
+}
+
 /* REFLECTION's. */
 KERNEL vec3 bsdf_reflection_fresnel(unsigned mask, const bsdf *b, float c) {
     vec3 f = v3_madd(b->reflect0, fresnel_schlick_weight(c), b->reflect1);
-    if (mask & BSDF_LAYERED) {
-        thin_film t = bsdf_film_at(b, c);
-        vec3 on_metal = v3_scale(thin_film_reflectance(&t, b->film.metal_f0), b->film.metal);
-        vec3 on_both = v3_madd(on_metal, b->film.dielectric, thin_film_reflectance(&t, b->f0));
-        f = v3_lerp(f, on_both, b->film.share);
-    }
+    if (mask & BSDF_LAYERED) f = bsdf_filmed(b, c, f);
     if (mask & BSDF_TRANSMISSIVE) f = v3_madd(f, b->interface, bsdf_interface_fresnel(mask, b, c));
     return f;
 }
@@ -62,12 +64,15 @@ KERNEL float bsdf_table_mu(unsigned mask, const bsdf *b, vec3 w) {
     return fm_min(w.z / sqrtf(w.z * w.z + w.x * w.x + y * y), 1.0f); /* |w| = 1, and x or z is not 0 */
 }
 
+/* Where Schlick's weight is its mean: about there other Fresnel terms are taken for their mean. */
+KERNEL float bsdf_mean_cosine(float share) { return 1.0f - fm_pow(share, 0.2f); }
+
 /* What the dielectric's coat reflects in all, seen from mu: full is bsdf_full there. */
 KERNEL vec3 bsdf_coat_albedo(unsigned mask, const bsdf *b, float mu, float full) {
     float share = bsdf_schlick_share(mu, b->alpha, b->roughness);
     vec3 f = v3_madd(b->f0, share, v3_sub(v3_splat(b->f90), b->f0));
-    if (mask & BSDF_LAYERED) { /* the film, about where its Schlick weight is the mean one */
-        thin_film t = bsdf_film_at(b, 1.0f - fm_pow(share, 0.2f));
+    if (mask & BSDF_LAYERED) {
+        thin_film t = bsdf_film_at(b, bsdf_mean_cosine(share));
         f = v3_lerp(f, thin_film_reflectance(&t, b->f0), b->film.share);
     }
     return v3_scale(f, full);

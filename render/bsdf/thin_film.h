@@ -42,7 +42,7 @@ KERNEL float thin_film_share(float share, float thickness_nm) {
 
 /* c: cosine outside of the film, ≥ 0; n ≥ 1. */
 KERNEL thin_film thin_film_make(float c, float n, float thickness_nm) {
-    float root = (n - 1.0f) / (n + 1.0f), r0 = root * root;
+    float r0 = fresnel_normal(n);
     float inside2 = 1.0f - (1.0f - c * c) / (n * n), inside = sqrtf(inside2 > 0.0f ? inside2 : 0.0f);
     float path = fm_min(2.0f * n * thickness_nm * inside, 1e5f); /* beyond nothing interferes */
     return (thin_film){n, r0 + (1.0f - r0) * fresnel_schlick_weight(c), fresnel_schlick_weight(inside),

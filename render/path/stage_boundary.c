@@ -1,3 +1,4 @@
+#include "render/bsdf/fresnel.h"
 #include "render/path/medium.h"
 #include "render/path/stages.h"
 
@@ -10,15 +11,10 @@ static void hide(path_scratch *x, uint32_t i) {
     x->near_layers[i] = x->far_layers[i] = x->anisotropy[i] = x->film[i] = x->pass[i] = 0.0f;
 }
 
-static float normal_reflectance(float eta) {
-    float root = (eta - 1.0f) / (eta + 1.0f);
-    return root * root;
-}
-
 /* The index of a surface is relative to what is in front of it. */
 static void set_eta(path_scratch *x, uint32_t i, const world_material *m, float eta) {
     x->eta[i] = eta;
-    x->f0[i] = m->f0 < 1.0f ? normal_reflectance(eta) : 1.0f; /* 1: an infinite index */
+    x->f0[i] = m->f0 < 1.0f ? fresnel_normal(eta) : 1.0f; /* 1: an infinite index */
 }
 
 /* A path takes on a wavelength where it enters a dispersive medium for the first time. */

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "render/bsdf/fresnel.h"
 #include "render/world/images.h"
 #include "render/world/media.h"
 #include "render/world/mips.h"
@@ -26,12 +27,6 @@ typedef struct builder {
     kiln_report *report;
 } builder;
 
-static bool transmits(const kiln_material *m) {
-    return m->layers & KILN_LAYER_TRANSMISSION && m->transmission.value > 0;
-}
-static bool passes_diffusely(const kiln_material *m) {
-    return m->layers & KILN_LAYER_DIFFUSE_TRANSMISSION && m->diffuse_transmission.value > 0;
-}
 static bool emits(const kiln_material *m) {
     return m->emission.value[0] > 0 || m->emission.value[1] > 0 || m->emission.value[2] > 0;
 }
@@ -56,8 +51,8 @@ static int list_layer_slots(const kiln_material *m, slot_use uses[SLOT_COUNT], i
     USE1(film, SLOT_FILM, m->iridescence)
     if (film && m->iridescence_thickness_texture.image)
         uses[n++] = (slot_use){SLOT_FILM_THICKNESS, &m->iridescence_thickness_texture, NULL};
-    USE1(passes_diffusely(m), SLOT_DIFFUSE_TRANSMISSION, m->diffuse_transmission)
-    USE3(passes_diffusely(m), SLOT_DIFFUSE_TRANSMISSION_COLOR, m->diffuse_transmission_color)
+    USE1(material_is_translucent(m), SLOT_DIFFUSE_TRANSMISSION, m->diffuse_transmission)
+    USE3(material_is_translucent(m), SLOT_DIFFUSE_TRANSMISSION_COLOR, m->diffuse_transmission_color)
 #undef USE1
 #undef USE3
     return n;
@@ -79,7 +74,7 @@ static int list_slots(const kiln_material *m, slot_use uses[SLOT_COUNT]) {
     if (m->specular.texture.image && m->specular.value > 0) USE(SLOT_SPECULAR, &m->specular.texture, NULL);
     if (m->specular_color.texture.image && m->specular.value > 0)
         USE(SLOT_SPECULAR_COLOR, &m->specular_color.texture, m->specular_color.value);
-    if (transmits(m) && m->transmission.texture.image) USE(SLOT_TRANSMISSION, &m->transmission.texture, NULL);
+    if (material_transmits(m) && m->transmission.texture.image) USE(SLOT_TRANSMISSION, &m->transmission.texture, NULL);
     n = list_layer_slots(m, uses, n);
 #undef USE
     return n;
@@ -180,12 +175,11 @@ static void set_constants(const builder *b, world_material *m, const kiln_materi
     m->roughness = glossy && !textured ? 1.0f - from->roughness.value : from->roughness.value;
     m->normal_scale = from->normal.value;
     m->specular = unlit ? 0.0f : from->specular.value;
-    m->transmission = transmits(from) && !unlit ? from->transmission.value : 0.0f;
+    m->transmission = material_transmits(from) && !unlit ? from->transmission.value : 0.0f;
     m->thin = material_is_solid(from) ? 0.0f : 1.0f;
     m->alpha_cutoff = from->alpha_cutoff;
     m->eta = from->ior > 0 ? fminf(from->ior, WORLD_IOR_MAX) : WORLD_IOR_MAX; /* 0 stands for infinity */
-    float root = (m->eta - 1.0f) / (m->eta + 1.0f);
-    m->f0 = from->ior > 0 ? root * root : 1.0f;
+    m->f0 = from->ior > 0 ? fresnel_normal(m->eta) : 1.0f;
     set_layers(b, m, from);
     bool crosses = m->transmission > 0 || m->diffuse_transmission > 0;
     m->flags = (from->double_sided ? MATERIAL_DOUBLE_SIDED : 0u) | (unlit ? MATERIAL_UNLIT : 0u) |
@@ -199,20 +193,23 @@ static void set_constants(const builder *b, world_material *m, const kiln_materi
                                                          : KIND_DIFFUSE;
 }
 
+/* The colour that the texture of a slot multiplies. */
+static float *color_of(world_material *m, material_slot slot) {
+    if (slot == SLOT_BASE) return m->base;
+    if (slot == SLOT_EMISSION) return m->emission;
+    if (slot == SLOT_SHEEN_COLOR) return m->sheen;
+    if (slot == SLOT_DIFFUSE_TRANSMISSION_COLOR) return m->diffuse_transmission_color;
+    return m->specular_color;
+}
+
 static bool set_textures(builder *b, world_material *m, const kiln_material *from) {
     slot_use uses[SLOT_COUNT];
     int n = list_slots(from, uses);
     for (int i = 0; i < n; i++) {
         if (!add_texture(b, from, &uses[i], &m->texture[uses[i].slot])) return false;
         if (uses[i].slot != SLOT_OPACITY) b->world->slots |= 1u << uses[i].slot;
-        /* The factor went into the texture's matrix. */
-        float *constant = uses[i].slot == SLOT_BASE       ? m->base
-                          : uses[i].slot == SLOT_EMISSION ? m->emission
-                          : uses[i].slot == SLOT_SHEEN_COLOR ? m->sheen
-                          : uses[i].slot == SLOT_DIFFUSE_TRANSMISSION_COLOR ? m->diffuse_transmission_color
-                                                          : m->specular_color;
         if (uses[i].factor && b->world->textures[b->world->texture_count - 1].has_matrix)
-            v3_store(constant, v3_splat(1.0f));
+            v3_store(color_of(m, uses[i].slot), v3_splat(1.0f)); /* the factor went into the texture's matrix */
     }
     return true;
 }

@@ -6,10 +6,15 @@
 #include "render/world/spectrum.h"
 #include "scene/transfer.h"
 
+bool material_transmits(const kiln_material *m) {
+    return m->layers & KILN_LAYER_TRANSMISSION && m->transmission.value > 0;
+}
+bool material_is_translucent(const kiln_material *m) {
+    return m->layers & KILN_LAYER_DIFFUSE_TRANSMISSION && m->diffuse_transmission.value > 0;
+}
 bool material_is_solid(const kiln_material *m) {
-    bool transmits = (m->layers & KILN_LAYER_TRANSMISSION && m->transmission.value > 0) ||
-                     (m->layers & KILN_LAYER_DIFFUSE_TRANSMISSION && m->diffuse_transmission.value > 0);
-    return transmits && !(m->layers & KILN_LAYER_UNLIT) && m->layers & KILN_LAYER_VOLUME && m->thickness.value > 0;
+    bool crossed = material_transmits(m) || material_is_translucent(m);
+    return crossed && !(m->layers & KILN_LAYER_UNLIT) && m->layers & KILN_LAYER_VOLUME && m->thickness.value > 0;
 }
 
 /* A solid material, and how it ranks. */

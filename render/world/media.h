@@ -4,6 +4,10 @@
 
 #include "render/world/world.h"
 
+/* Does light cross the surface: bent or straight on; in all directions? */
+bool material_transmits(const kiln_material *);
+bool material_is_translucent(const kiln_material *);
+
 /* Does the material bound a solid? It has a volume with a thickness, and lets light in. */
 bool material_is_solid(const kiln_material *);
 

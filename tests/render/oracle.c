@@ -279,10 +279,7 @@ static surface look_up(const path_context *c, hit *h, vec3 wo, vec3 *emission, v
     return s;
 }
 
-static float normal_reflectance(const world_material *m, float eta) {
-    float root = (eta - 1.0f) / (eta + 1.0f);
-    return m->f0 < 1.0f ? root * root : 1.0f;
-}
+static float normal_reflectance(const world_material *m, float eta) { return m->f0 < 1.0f ? fresnel_normal(eta) : 1.0f; }
 
 /* What the media on both sides make of it. */
 static void bound(const path_context *c, const path *p, const hit *h, surface *s) {
