@@ -56,20 +56,18 @@ static box material_box(const kiln_mesh *m, kiln_id material) {
     return b;
 }
 
-/* sizes, of the largest copy of each material. */
-static void find_sizes(const kiln_scene *scene, const double *scales, candidate *list, int n, double *sizes) {
-    for (uint32_t i = 0; i < scene->mesh_count; i++) {
-        const kiln_mesh *m = &scene->meshes[i];
-        if (!(scales[i] > 0)) continue;
-        box whole = empty;
-        memcpy(whole.low, m->min, sizeof whole.low), memcpy(whole.high, m->max, sizeof whole.high);
-        if (!m->face_materials) sizes[m->material] = fmax(sizes[m->material], box_volume(&whole) * scales[i]);
-        for (int k = 0; m->face_materials && k < n; k++) {
-            box b = material_box(m, list[k].material);
-            sizes[list[k].material] = fmax(sizes[list[k].material], box_volume(&b) * scales[i]);
-        }
+/* The solid materials of a mesh, each once, into list; their number. stamps: of all materials, marked with the mesh's
+ * number, which starts at 1. */
+static uint32_t mesh_solids(const kiln_scene *scene, uint32_t mesh, uint32_t *stamps, kiln_id *list) {
+    const kiln_mesh *m = scene_mesh(scene, mesh);
+    uint32_t count = 0, faces = m->face_materials ? m->face_count : 1;
+    for (uint32_t f = 0; f < faces; f++) {
+        kiln_id id = m->face_materials ? m->face_materials[f] : m->material;
+        if (stamps[id] == mesh) continue;
+        stamps[id] = mesh;
+        if (material_is_solid(scene_material(scene, id))) list[count++] = id;
     }
-    for (int k = 0; k < n; k++) list[k].size = sizes[list[k].material];
+    return count;
 }
 
 /* By how much the largest copy of each mesh is larger than the mesh, in volume. */
@@ -146,26 +144,15 @@ static bool boxes_meet(const box *a, const box *b) {
 /* Copies that are compared one with another; where there are more, some are taken to touch. */
 enum { COMPARED = 512 };
 
-static bool some_touch(const world *w, const kiln_scene *scene) {
+static bool some_touch(const kiln_scene *scene, const uint32_t *solids) {
     box boxes[COMPARED];
     int count = 0;
     for (uint32_t i = 0; i < scene->instance_count; i++) {
         const kiln_instance *copy = &scene->instances[i];
-        const kiln_mesh *m = scene_mesh(scene, copy->mesh);
-        uint32_t solids = w->materials[m->material].medium != 0;
-        if (m->face_materials) {
-            kiln_id first = 0;
-            solids = 0;
-            for (uint32_t f = 0; f < m->face_count && solids < 2; f++) {
-                kiln_id id = m->face_materials[f];
-                if (!w->materials[id].medium || id == first) continue;
-                first = id;
-                solids++;
-            }
-        }
-        if (solids > 1 || (solids && count == COMPARED)) return true;
-        if (!solids) continue;
-        boxes[count] = placed_box(m, &copy->transforms[0]);
+        uint32_t own = solids[copy->mesh - 1];
+        if (own > 1 || (own && count == COMPARED)) return true;
+        if (!own) continue;
+        boxes[count] = placed_box(scene_mesh(scene, copy->mesh), &copy->transforms[0]);
         for (int k = 0; k < count; k++)
             if (boxes_meet(&boxes[k], &boxes[count])) return true;
         count++;
@@ -193,22 +180,30 @@ static void warn_if_open(const kiln_scene *scene, const kiln_mesh *m, kiln_id ma
                    scene_material(scene, material)->name, edges);
 }
 
-/* Solids must be closed; for each mesh and solid material of it. */
-static void check_closed(const world *w, const kiln_scene *scene, const double *scales, const candidate *list, int n,
-                         kiln_report *report) {
-    for (uint32_t i = 0; i < scene->mesh_count; i++) {
-        const kiln_mesh *m = &scene->meshes[i];
-        if (!(scales[i] > 0)) continue;
-        if (!m->face_materials && w->materials[m->material].medium) warn_if_open(scene, m, m->material, report);
-        for (int k = 0; m->face_materials && k < n; k++) warn_if_open(scene, m, list[k].material, report);
-    }
-}
-
 /* What building needs for a while. */
 typedef struct scratch {
     candidate *list;
-    double *scales, *sizes; /* of meshes; of materials */
+    double *scales, *sizes; /* of meshes; of materials: of the largest copy */
+    uint32_t *solids;       /* of meshes: how many solid materials they have */
+    uint32_t *stamps;       /* of materials */
+    kiln_id *found;
 } scratch;
+
+/* Every solid of every mesh: how large it is, and whether it is closed, as it must be. */
+static void look_at_meshes(const kiln_scene *scene, scratch *s, kiln_report *report) {
+    find_scales(scene, s->scales);
+    for (uint32_t i = 0; i < scene->mesh_count; i++) {
+        const kiln_mesh *m = &scene->meshes[i];
+        if (!(s->scales[i] > 0)) continue;
+        s->solids[i] = mesh_solids(scene, i + 1, s->stamps, s->found);
+        for (uint32_t k = 0; k < s->solids[i]; k++) {
+            kiln_id id = s->found[k];
+            box part = material_box(m, id);
+            s->sizes[id] = fmax(s->sizes[id], box_volume(&part) * s->scales[i]);
+            warn_if_open(scene, m, id, report);
+        }
+    }
+}
 
 static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decoding, const bool *used, scratch *s,
                   kiln_report *report) {
@@ -218,8 +213,8 @@ static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decodi
         const kiln_material *m = scene_material(scene, i);
         if (used[i] && material_is_solid(m)) list[n++] = (candidate){.material = i, .priority = m->priority};
     }
-    if (n) find_scales(scene, s->scales);
-    if (n) find_sizes(scene, s->scales, list, n, s->sizes);
+    if (n) look_at_meshes(scene, s, report);
+    for (int i = 0; i < n; i++) list[i].size = s->sizes[list[i].material];
     if (n > 0xffff)
         return report_error(report, KILN_CODE_LIMIT, NULL, "merge materials that are equal",
                             "more than 65,535 materials bound a volume");
@@ -235,19 +230,25 @@ static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decodi
         w->materials[list[i].material].medium = (uint32_t)i + 1;
         set_medium(w, decoding, scene_material(scene, list[i].material), (uint32_t)i + 1);
     }
-    check_closed(w, scene, s->scales, list, n, report);
-    w->touches = n > 0 && some_touch(w, scene);
+    w->touches = n > 0 && some_touch(scene, s->solids);
     return set_spectrum(w, decoding) || report_no_memory(report, "building media");
 }
 
 bool world_build_media(world *w, const kiln_scene *scene, const kiln_decoding *decoding, const bool *used,
                        kiln_report *report) {
-    scratch s = {array_alloc(w->material_count, sizeof *s.list), array_alloc(scene->mesh_count, sizeof *s.scales),
-                 array_alloc(w->material_count, sizeof *s.sizes)};
-    bool done = s.list && s.scales && s.sizes ? build(w, scene, decoding, used, &s, report)
-                                              : report_no_memory(report, "building media");
+    scratch s = {.list = array_alloc(w->material_count, sizeof *s.list),
+                 .scales = array_alloc(scene->mesh_count, sizeof *s.scales),
+                 .sizes = array_alloc(w->material_count, sizeof *s.sizes),
+                 .solids = array_alloc(scene->mesh_count, sizeof *s.solids),
+                 .stamps = array_alloc(w->material_count, sizeof *s.stamps),
+                 .found = array_alloc(w->material_count, sizeof *s.found)};
+    bool room = s.list && s.scales && s.sizes && s.solids && s.stamps && s.found;
+    bool done = room ? build(w, scene, decoding, used, &s, report) : report_no_memory(report, "building media");
     free(s.list);
     free(s.scales);
     free(s.sizes);
+    free(s.solids);
+    free(s.stamps);
+    free(s.found);
     return done;
 }
