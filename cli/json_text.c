@@ -1,6 +1,7 @@
 #include "cli/json_text.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 void append_grouped(kiln_text *out, double count) {
@@ -20,6 +21,21 @@ void append_bytes(kiln_text *out, double bytes) {
     size_t unit = 0;
     for (; bytes >= 1000 && unit < 4; bytes /= 1000) unit++;
     text_format(out, unit && bytes < 100 ? "%.1f %s" : "%.0f %s", bytes, units[unit]);
+}
+
+static int by_share(const void *a, const void *b) {
+    double x = number_in(*(const json_t *const *)a, "share"), y = number_in(*(const json_t *const *)b, "share");
+    return (x < y) - (x > y);
+}
+
+void append_stages(kiln_text *out, const json_t *stages, double least) {
+    const json_t *rows[64], *stage;
+    size_t count = 0, i;
+    json_array_foreach(stages, i, stage)
+        if (count < sizeof rows / sizeof *rows && number_in(stage, "share") >= least) rows[count++] = stage;
+    qsort(rows, count, sizeof *rows, by_share);
+    for (i = 0; i < count; i++)
+        text_format(out, "%s%s %.0f%%", i ? ", " : "", text_in(rows[i], "name"), 100 * number_in(rows[i], "share"));
 }
 
 void append_vector(kiln_text *out, const json_t *numbers) {

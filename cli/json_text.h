@@ -19,6 +19,8 @@ static inline bool is_null(const json_t *o, const char *key) { return !member(o,
 void append_grouped(kiln_text *, double count);
 /* "12.3 MB" */
 void append_bytes(kiln_text *, double bytes);
+/* "bounce rays 41%, scatter 9%": the stages of a render that take at least this share of its time, longest first. */
+void append_stages(kiln_text *, const json_t *stages, double least);
 /* "(1, 0.5, 0)" */
 void append_vector(kiln_text *, const json_t *numbers);
 /* Text from a file: control characters become '?', and blanks fill it up to a width counted in characters. */

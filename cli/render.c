@@ -86,6 +86,20 @@ static void log_times(const json_t *stats) {
     text_free(&line);
 }
 
+/* The longest; with --verbose all of them, and the rest of the threads' time. */
+static void log_stages(const json_t *stats) {
+    const json_t *render = json_object_get(stats, "render"), *stages = json_object_get(render, "stages"), *stage;
+    kiln_text line = {0};
+    size_t i;
+    append_stages(&line, stages, 0.05);
+    if (line.length) log_line(LOG_NORMAL, "render by stage: %s", line.data);
+    text_free(&line);
+    json_array_foreach(stages, i, stage)
+        log_line(LOG_VERBOSE, "  %-12s %7.2f s of threads, %4.1f%%", text_in(stage, "name"), number_in(stage, "seconds"),
+                 100 * number_in(stage, "share"));
+    log_line(LOG_VERBOSE, "  %-12s %7.2f s of threads", "waiting", number_in(render, "waiting_seconds"));
+}
+
 static void summarise(const kiln_job *job, const kiln_report *report) {
     kiln_job_result result = kiln_job_last(job);
     char *text = kiln_job_stats(job);
@@ -94,6 +108,7 @@ static void summarise(const kiln_job *job, const kiln_report *report) {
         log_outputs(stats);
         log_end(&result, stats);
         log_times(stats);
+        log_stages(stats);
     }
     log_warning_counts(report);
     json_decref(stats);

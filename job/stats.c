@@ -106,6 +106,26 @@ static json_t *scene_facts(const job_run *r) {
     return o;
 }
 
+json_t *stats_stages(const kiln_render_stats *s) {
+    static const char *const names[KILN_STAGE_COUNT] = {
+#define KILN_STAGE_NAME(id, name) name,
+        KILN_STAGES(KILN_STAGE_NAME)
+#undef KILN_STAGE_NAME
+    };
+    json_t *array = json_array();
+    double total = 0;
+    for (int i = 0; i < KILN_STAGE_COUNT; i++) total += s->stage_seconds[i];
+    for (int i = 0; i < KILN_STAGE_COUNT; i++) {
+        if (s->stage_seconds[i] <= 0) continue;
+        json_t *row = json_object();
+        put_text(row, "name", names[i]);
+        put_number(row, "seconds", s->stage_seconds[i]);
+        put_number(row, "share", s->stage_seconds[i] / total);
+        (void)json_array_append_new(array, row);
+    }
+    return array;
+}
+
 static json_t *discarded(const kiln_render_stats *s) {
     static const char *const names[KILN_DISCARD_COUNT] = {
 #define KILN_DISCARD_NAME(id, name) name,
@@ -159,6 +179,8 @@ static json_t *render_facts(const job_run *r) {
     put_count(rays, "bounce", s->bounce_rays);
     put_count(rays, "shadow", s->shadow_rays);
     put(o, "rays", rays);
+    put(o, "stages", stats_stages(s));
+    put_number(o, "waiting_seconds", s->waiting_seconds);
     put(o, "error", error_facts(r));
     put(o, "discarded", discarded(s));
     put_number(o, "lost_energy", s->lost_energy >= 0 ? s->lost_energy : NAN);

@@ -106,8 +106,10 @@ static bool must_stop(pass *p, uint32_t thread) {
 
 static void trace(pass *p, uint32_t thread, uint32_t count) {
     pass_worker *w = &p->workers[thread];
+    stage_clock_start(&w->batch->clock);
     p->tracer(p->context, w->samples, count, w->batch);
     store(p, w, count);
+    stage_clock_read(&w->batch->clock, KILN_STAGE_FILM);
 }
 
 /* Even bits of a Morton number: neighbours in it are neighbours in the tile. */
@@ -134,13 +136,11 @@ static size_t shuffled(const pass *p, size_t tile) {
     return a == 1 ? (tile * step + (size_t)(p->shuffle >> 32) % count) % count : count - 1 - tile;
 }
 
-static void run_tile(void *context, size_t item, uint32_t thread) {
-    pass *p = context;
+static void trace_tile(pass *p, size_t item, uint32_t thread) {
     const kiln_film *f = p->film;
     size_t tile = shuffled(p, item);
     uint32_t x0 = (uint32_t)(tile % tiles_across(f)) * TILE, y0 = (uint32_t)(tile / tiles_across(f)) * TILE, count = 0;
     path_sample *samples = p->workers[thread].samples;
-    (void)denormals_flush(); /* this worker's */
     for (uint32_t m = 0; m < TILE * TILE; m++) {
         uint32_t x = x0 + even_bits(m), y = y0 + even_bits(m >> 1);
         if (x >= f->width || y >= f->height) continue;
@@ -156,8 +156,32 @@ static void run_tile(void *context, size_t item, uint32_t thread) {
     if (count && !must_stop(p, thread)) trace(p, thread, count);
 }
 
+static void run_tile(void *context, size_t item, uint32_t thread) {
+    pass *p = context;
+    uint64_t began = clock_ticks();
+    (void)denormals_flush(); /* this worker's */
+    trace_tile(p, item, thread);
+    p->workers[thread].busy += clock_ticks() - began;
+}
+
 void pass_run(pass *p) {
     unsigned before = denormals_flush();
+    uint64_t ticks = clock_ticks();
+    double seconds = clock_seconds();
     threads_for(p->threads, (size_t)tiles_across(p->film) * tiles_down(p->film), run_tile, p);
+    p->ticks += clock_ticks() - ticks;
+    p->seconds += clock_seconds() - seconds;
     denormals_restore(before); /* the calling thread's */
+}
+
+void pass_stage_seconds(const pass *p, double seconds[KILN_STAGE_COUNT]) {
+    double sampled = 0, busy = 0;
+    for (int s = 0; s < KILN_STAGE_COUNT; s++) {
+        seconds[s] = 0;
+        for (uint32_t t = 0; t < p->threads; t++) seconds[s] += (double)p->workers[t].batch->clock.ticks[s];
+        sampled += seconds[s];
+    }
+    for (uint32_t t = 0; t < p->threads; t++) busy += (double)p->workers[t].busy;
+    double scale = sampled > 0 ? busy / sampled * p->seconds / (double)p->ticks : 0;
+    for (int s = 0; s < KILN_STAGE_COUNT; s++) seconds[s] *= scale;
 }

@@ -12,6 +12,7 @@ typedef struct pass_worker {
     batch *batch;
     path_sample *samples;
     _Atomic uint64_t traced; /* samples; the one count that others read while the worker works */
+    uint64_t busy; /* clock_ticks */
     uint64_t discarded[KILN_DISCARD_COUNT];
     uint64_t discarded_first[KILN_DISCARD_COUNT]; /* reading-order number of the first pixel */
     fixed beyond[3];
@@ -26,6 +27,9 @@ typedef struct pass {
     uint32_t threads;
     pass_worker *workers;
 
+    uint64_t ticks;    /* of passes so far, in clock_ticks and in seconds */
+    double seconds;
+
     uint32_t target;   /* samples per pixel when the pass is done */
     double deadline;   /* clock_seconds; 0: none */
     const volatile int *cancel;
@@ -39,6 +43,9 @@ void pass_free_workers(pass *);
 
 /* Brings every pixel to `target` samples, unless stopped: then some are left where they were. */
 void pass_run(pass *);
+
+/* What the workers have done so far, in seconds of all together. Between passes. */
+void pass_stage_seconds(const pass *, double seconds[KILN_STAGE_COUNT]);
 
 uint64_t pass_samples(const pass *); /* traced so far, by all workers; exact between passes, but never torn */
 

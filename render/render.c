@@ -131,6 +131,10 @@ static kiln_stop run_passes(run *r) {
 static void collect(run *r, kiln_stop stop, kiln_render_stats *stats) {
     r->spp = kiln_film_spp(r->film);
     *stats = (kiln_render_stats){.stop = stop, .spp = r->spp, .seconds = seconds(r), .lost_energy = -1};
+    pass_stage_seconds(&r->pass, stats->stage_seconds);
+    stats->waiting_seconds = stats->seconds * r->pass.threads;
+    for (int s = 0; s < KILN_STAGE_COUNT; s++) stats->waiting_seconds -= stats->stage_seconds[s];
+    if (stats->waiting_seconds < 0) stats->waiting_seconds = 0; /* readings of two clocks */
     fixed beyond = 0, kept = 0;
     uint64_t first[KILN_DISCARD_COUNT];
     memset(first, 0xff, sizeof first);

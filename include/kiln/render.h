@@ -154,10 +154,46 @@ typedef enum kiln_discard {
         KILN_DISCARD_COUNT
 } kiln_discard;
 
+/* What threads do while they render: identifier, machine-readable name. In the order of the work. */
+#define KILN_STAGES(X)                                                                                                 \
+    X(CAMERA, "camera")           /* samples become paths: pixel filter, lens */                                       \
+    X(CAMERA_RAYS, "camera rays") /* where they meet a surface; Embree, as the next two */                             \
+    X(BOUNCE_RAYS, "bounce rays")                                                                                      \
+    X(SHADOW_RAYS, "shadow rays") /* is there anything before the light? */                                            \
+    X(TOUCH, "touch")             /* surfaces of solids that coincide */                                               \
+    X(FLIGHT, "flight")           /* media that scatter */                                                             \
+    X(ESCAPE, "escape")           /* what paths collect that leave the scene */                                        \
+    X(SORT, "sort")               /* paths that ended go; the rest close up, by kinds of material */                   \
+    X(FETCH, "fetch")             /* triangles are gathered */                                                         \
+    X(SURFACE, "surface")         /* hit point, normals, where rays leave from */                                      \
+    X(CONE, "cone")               /* footprints for filtered textures */                                               \
+    X(MATERIAL, "material")       /* constants, textures */                                                            \
+    X(BOUNDARY, "boundary")       /* what lies behind surfaces of solids */                                            \
+    X(NORMAL, "normal")           /* mapped normals */                                                                 \
+    X(ABSORB, "absorb")           /* media that absorb */                                                              \
+    X(AOVS, "aovs")               /* what the first surface is */                                                      \
+    X(EMISSION, "emission")       /* light that paths meet */                                                          \
+    X(LIMIT, "limit")             /* of depth */                                                                       \
+    X(RANDOM, "random")           /* numbers of a bounce */                                                            \
+    X(LIGHT, "light")             /* which light, where on it */                                                       \
+    X(CONNECT, "connect")         /* what it adds: the BSDF towards it */                                              \
+    X(SCATTER, "scatter")         /* the BSDF's direction, roulette */                                                 \
+    X(PARTS, "parts")             /* whose light it was, for films that hold parts */                                  \
+    X(FILM, "film")               /* samples are added up */
+
+typedef enum kiln_stage {
+#define KILN_STAGE_ENUM(id, name) KILN_STAGE_##id,
+    KILN_STAGES(KILN_STAGE_ENUM)
+#undef KILN_STAGE_ENUM
+        KILN_STAGE_COUNT
+} kiln_stage;
+
 typedef struct kiln_render_stats {
     kiln_stop stop;
     uint32_t spp;
     double seconds;
+    double stage_seconds[KILN_STAGE_COUNT]; /* of all threads together; shares estimated from one batch in seven */
+    double waiting_seconds; /* of all threads together: for one another between passes, and estimates of the error */
     uint64_t camera_rays, bounce_rays, shadow_rays;
     uint64_t discarded[KILN_DISCARD_COUNT];
     uint32_t discarded_pixel[KILN_DISCARD_COUNT][2]; /* the first in reading order, where discarded > 0 */

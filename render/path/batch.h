@@ -11,6 +11,7 @@
 
 #include "render/accel/accel.h"
 #include "render/bsdf/bsdf.h"
+#include "render/path/stage_clock.h"
 #include "render/path/touch.h"
 #include "render/world/world.h"
 
@@ -180,6 +181,7 @@ typedef struct batch {
     uint32_t depth;   /* scattering events so far */
     lane_range kinds[KIND_COUNT];
     trace_counts camera_rays, bounce_rays, shadow_rays;
+    stage_clock clock;
 } batch;
 
 static inline path_state *batch_state(batch *b) { return &b->states[b->current]; }

@@ -7,46 +7,55 @@
  * scene does not call for is not run. */
 #include "render/path/stages.h"
 
+/* A stage, and whose time it takes. */
+#define RUN(stage, row) (STAGE(stage)(c, b), stage_clock_read(&b->clock, KILN_STAGE_##row))
+
 /* Everything that a point must know before it is lit. */
 static void look_at_surfaces(const path_context *c, batch *b) {
-    STAGE(fetch)(c, b);
-    STAGE(surface)(c, b);
-    if (c->world->filters) STAGE(cone_hit)(c, b);
-    STAGE(material)(c, b);
-    if (c->world->media_count > 1) STAGE(boundary)(c, b);
-    STAGE(normal)(c, b);
-    if (c->world->scatters) STAGE(scattering)(c, b);
+    RUN(fetch, FETCH);
+    RUN(surface, SURFACE);
+    if (c->world->filters) RUN(cone_hit, CONE);
+    RUN(material, MATERIAL);
+    if (c->world->media_count > 1) RUN(boundary, BOUNDARY);
+    RUN(normal, NORMAL);
+    if (c->world->scatters) RUN(scattering, FLIGHT);
 }
 
 void STAGE(trace_samples)(const path_context *c, const path_sample *samples, uint32_t count, batch *b) {
     const world *w = c->world;
     STAGE(camera)(c, samples, count, b);
-    if (w->filters) STAGE(cone_start)(c, b);
+    stage_clock_read(&b->clock, KILN_STAGE_CAMERA);
+    if (w->filters) RUN(cone_start, CONE);
     while (b->n > 0) {
-        STAGE(trace)(c, b);
-        if (w->touches) STAGE(touch)(c, b);
-        if (w->scatters) STAGE(flight)(c, b);
-        STAGE(escape)(c, b);
-        STAGE(sort)(c, b);
+        if (b->depth == 0) RUN(trace, CAMERA_RAYS);
+        else RUN(trace, BOUNCE_RAYS);
+        if (w->touches) RUN(touch, TOUCH);
+        if (w->scatters) RUN(flight, FLIGHT);
+        RUN(escape, ESCAPE);
+        RUN(sort, SORT);
         look_at_surfaces(c, b);
-        if (w->absorbs) STAGE(absorb)(c, b);
-        if ((c->aovs || c->handles) && b->depth == 0) STAGE(aovs)(c, b);
-        if (w->emits) STAGE(emission)(c, b);
-        if (w->emits && c->parts) STAGE(part_emission)(c, b);
-        if (b->depth >= c->max_depth && STAGE(limit)(c, b)) {
-            STAGE(sort)(c, b);
-            look_at_surfaces(c, b);
+        if (w->absorbs) RUN(absorb, ABSORB);
+        if ((c->aovs || c->handles) && b->depth == 0) RUN(aovs, AOVS);
+        if (w->emits) RUN(emission, EMISSION);
+        if (w->emits && c->parts) RUN(part_emission, PARTS);
+        if (b->depth >= c->max_depth) {
+            bool ended = STAGE(limit)(c, b);
+            stage_clock_read(&b->clock, KILN_STAGE_LIMIT);
+            if (ended) {
+                RUN(sort, SORT);
+                look_at_surfaces(c, b);
+            }
         }
-        STAGE(random)(c, b);
+        RUN(random, RANDOM);
         if (c->light_cdf) {
-            STAGE(light)(c, b);
-            STAGE(connect)(c, b);
-            if (c->parts) STAGE(part_light)(c, b);
+            RUN(light, LIGHT);
+            RUN(connect, CONNECT);
+            if (c->parts) RUN(part_light, PARTS);
         }
-        if (c->parts && b->depth == 0) STAGE(part_scatter)(c, b);
-        STAGE(scatter)(c, b);
-        if (w->filters) STAGE(cone_scatter)(c, b);
-        STAGE(close)(c, b);
+        if (c->parts && b->depth == 0) RUN(part_scatter, PARTS);
+        RUN(scatter, SCATTER);
+        if (w->filters) RUN(cone_scatter, CONE);
+        RUN(close, SORT);
         b->depth++;
     }
 }

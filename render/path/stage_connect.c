@@ -74,9 +74,11 @@ void STAGE(connect)(const path_context *c, batch *b) {
         x->list[count] = i;
         count += (x->cr[i] > 0.0f) | (x->cg[i] > 0.0f) | (x->cb[i] > 0.0f);
     }
+    stage_clock_read(&b->clock, KILN_STAGE_CONNECT);
     ray_coverage coverage = {s->seed, s->index, sample_key(SAMPLE_LIGHT_FINE, b->depth), c->independent};
     ray_lanes rays = {x->sox, x->soy, x->soz, x->sdx, x->sdy, x->sdz, NULL, x->tfar, coverage, x->list, count};
     accel_visible(c->world, &rays, x->visible, &b->shadow_rays);
+    stage_clock_read(&b->clock, KILN_STAGE_SHADOW_RAYS);
     for (uint32_t k = 0; k < count; k++)
         if (x->visible[x->list[k]] == RAY_REFUSED) b->out.refused[slot_index(s->slot[x->list[k]])] = 1;
     LANE_LOOP (uint32_t i = 0; i < b->n; i++) {

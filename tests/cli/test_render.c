@@ -221,7 +221,14 @@ static void statistics_are_json(void **state) {
     assert_int_equal(r.code, 0);
     json_t *json = json_loads(r.out, 0, NULL);
     assert_non_null(json);
-    assert_int_equal(json_integer_value(json_object_get(json_object_get(json, "render"), "samples")), 128);
+    const json_t *render = json_object_get(json, "render"), *stage;
+    assert_int_equal(json_integer_value(json_object_get(render, "samples")), 128);
+    double shares = 0;
+    size_t i;
+    json_array_foreach(json_object_get(render, "stages"), i, stage)
+        shares += json_number_value(json_object_get(stage, "share"));
+    assert_true(shares > 0.999 && shares < 1.001);
+    assert_non_null(strstr(r.err, "render by stage: "));
     json_decref(json);
     result_free(&r);
 }
