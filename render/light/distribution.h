@@ -22,12 +22,17 @@ KERNEL float distribution_probability(const uint32_t *cdf, uint32_t index) {
     return (float)(int32_t)(cdf[index + 1] - cdf[index]) * 0x1p-24f;
 }
 
+/* Where distribution_pick starts to look. */
+KERNEL const uint32_t *distribution_guide(const uint32_t *guide, uint32_t count, float u) {
+    return guide + (((uint64_t)(uint32_t)(int32_t)(u * 0x1p24f) * count) >> 24);
+}
+
 /* The outcome for u in [0, 1); *rest is where u lies within it, in [0, 1): as stratified as u itself. fine in [0, 1) is
  * where in its quantum u lies, which its 24 bits do not say. */
 KERNEL uint32_t distribution_pick(const uint32_t *cdf, const uint32_t *guide, uint32_t count, float u, float fine,
                                   float *rest) {
     uint32_t quantum = (uint32_t)(int32_t)(u * 0x1p24f);
-    uint32_t index = guide[((uint64_t)quantum * count) >> 24];
+    uint32_t index = *distribution_guide(guide, count, u);
     while (cdf[index + 1] <= quantum) index++;
     uint32_t size = cdf[index + 1] - cdf[index];
     float within = ((float)(int32_t)(quantum - cdf[index]) + fine) / (float)(int32_t)size;

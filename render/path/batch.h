@@ -131,7 +131,8 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
     X(float, rr) X(float, rg) X(float, rb)       /* radiance */                                                        \
     X(float, light_area) X(float, light_error) X(float, spot_scale) X(float, spot_offset)                              \
     X(float, one_minus_cos) X(float, two_sided) X(float, probability)                                                  \
-    X(uint32_t, light) X(uint32_t, light_kind)
+    X(uint32_t, light) X(uint32_t, light_kind)                                                                         \
+    X(uint32_t, row) X(uint32_t, column) X(float, across_texel) X(float, down_texel) /* environment_choice */
 
 /* Random numbers of a bounce. */
 #define RANDOM_FIELDS(X)                                                                                               \

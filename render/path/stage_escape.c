@@ -2,6 +2,9 @@
 #include "render/path/estimate.h"
 #include "render/path/stages.h"
 
+/* Lanes ahead that the caches are told of. */
+enum { AHEAD_TEXELS = 12 };
+
 static void add(path_state *s, uint32_t i, vec3 radiance) {
     s->lr[i] += s->tr[i] * radiance.x;
     s->lg[i] += s->tg[i] * radiance.y;
@@ -36,7 +39,8 @@ static void add_environment(const path_context *c, batch *b, uint32_t count) {
     }
     float probability = c->light_cdf ? distribution_probability(c->light_cdf, e->light) : 0.0f;
     for (uint32_t k = 0; k < count; k++) {
-        uint32_t i = x->list[k];
+        uint32_t i = x->list[k], ahead = k + AHEAD_TEXELS;
+        if (ahead < count) environment_prefetch_place(e, (vec2){x->tu[ahead], x->tv[ahead]});
         environment_value v = environment_look_up(e, (vec2){x->tu[k], x->tv[k]});
         float weight = estimate_hit_weight(c->estimator, s->pdf[i], probability * v.pdf);
         add(s, i, v3_scale(v.radiance, weight));

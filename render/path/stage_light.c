@@ -8,22 +8,28 @@ static void choose(const path_context *c, batch *b) {
     const light_table *t = &c->world->lights;
     path_scratch *x = &b->scratch;
     for (uint32_t i = 0; i < b->n; i++) {
-        float rest, fine = x->u_fine[i];
-        uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, x->u_light_x[i], fine, &rest);
+        float rest;
+        uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, x->u_light_x[i], x->u_fine[i], &rest);
+        const light *l = &t->lights[k];
         x->u_light_x[i] = rest;
-        light l = t->lights[k];
-        if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, (vec2){rest, x->u_light_y[i]}, fine, &l);
         x->probability[i] = distribution_probability(c->light_cdf, k);
         x->light[i] = k;
-        x->light_kind[i] = (uint32_t)l.kind;
-        x->qx[i] = l.position.x, x->qy[i] = l.position.y, x->qz[i] = l.position.z;
-        x->e1x[i] = l.e1.x, x->e1y[i] = l.e1.y, x->e1z[i] = l.e1.z;
-        x->e2x[i] = l.e2.x, x->e2y[i] = l.e2.y, x->e2z[i] = l.e2.z;
-        x->ax[i] = l.axis.x, x->ay[i] = l.axis.y, x->az[i] = l.axis.z;
-        x->rr[i] = l.radiance.x, x->rg[i] = l.radiance.y, x->rb[i] = l.radiance.z;
-        x->light_area[i] = l.area, x->light_error[i] = l.error;
-        x->spot_scale[i] = l.spot_scale, x->spot_offset[i] = l.spot_offset;
-        x->one_minus_cos[i] = l.one_minus_cos, x->two_sided[i] = l.two_sided;
+        x->light_kind[i] = (uint32_t)l->kind;
+    }
+}
+
+static void load_records(const path_context *c, batch *b) {
+    path_scratch *x = &b->scratch;
+    for (uint32_t i = 0; i < b->n; i++) {
+        const light *l = &c->world->lights.lights[x->light[i]];
+        x->qx[i] = l->position.x, x->qy[i] = l->position.y, x->qz[i] = l->position.z;
+        x->e1x[i] = l->e1.x, x->e1y[i] = l->e1.y, x->e1z[i] = l->e1.z;
+        x->e2x[i] = l->e2.x, x->e2y[i] = l->e2.y, x->e2z[i] = l->e2.z;
+        x->ax[i] = l->axis.x, x->ay[i] = l->axis.y, x->az[i] = l->axis.z;
+        x->rr[i] = l->radiance.x, x->rg[i] = l->radiance.y, x->rb[i] = l->radiance.z;
+        x->light_area[i] = l->area, x->light_error[i] = l->error;
+        x->spot_scale[i] = l->spot_scale, x->spot_offset[i] = l->spot_offset;
+        x->one_minus_cos[i] = l->one_minus_cos, x->two_sided[i] = l->two_sided;
     }
 }
 
@@ -67,6 +73,8 @@ static void vary_emission(const world *w, batch *b) {
 void STAGE(light)(const path_context *c, batch *b) {
     const light_table *t = &c->world->lights;
     choose(c, b);
+    if (t->kinds != KIND(LIGHT_ENVIRONMENT)) load_records(c, b);
+    if (t->environment.present) STAGE(light_environment)(c, b);
     if (t->kinds == KIND(LIGHT_TRIANGLE)) sample(KIND(LIGHT_TRIANGLE), b);
     else if (t->kinds == KIND(LIGHT_ENVIRONMENT)) sample(KIND(LIGHT_ENVIRONMENT), b);
     else sample(KIND(LIGHT_KINDS) - 1, b);
