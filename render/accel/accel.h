@@ -41,6 +41,15 @@ typedef struct ray_lanes {
 
 typedef struct trace_counts { uint64_t rays, refused; } trace_counts;
 
+/* The stages call instances of these that are compiled as they are; everyone else the plain ones. */
+#ifdef KILN_ISA
+#define ACCEL_PASTE(name, isa) name##_##isa
+#define ACCEL_EXPAND(name, isa) ACCEL_PASTE(name, isa)
+#define accel_closest ACCEL_EXPAND(accel_closest, KILN_ISA)
+#define accel_visible ACCEL_EXPAND(accel_visible, KILN_ISA)
+#define accel_visit ACCEL_EXPAND(accel_visit, KILN_ISA)
+#endif
+
 /* For each ray: the triangle (world's number, or TRIANGLE_…), its copy, distance and barycentric place. */
 void accel_closest(const world *, const ray_lanes *, float *t, float *u, float *v, uint32_t *triangle,
                    uint32_t *instance, trace_counts *);
