@@ -74,7 +74,7 @@ void STAGE(light)(const path_context *c, batch *b) {
     const light_table *t = &c->world->lights;
     choose(c, b);
     if (t->kinds != KIND(LIGHT_ENVIRONMENT)) load_records(c, b);
-    if (t->environment.present) STAGE(light_environment)(c, b);
+    if (t->environment.present) STAGE(surroundings)(c, b);
     if (t->kinds == KIND(LIGHT_TRIANGLE)) sample(KIND(LIGHT_TRIANGLE), b);
     else if (t->kinds == KIND(LIGHT_ENVIRONMENT)) sample(KIND(LIGHT_ENVIRONMENT), b);
     else sample(KIND(LIGHT_KINDS) - 1, b);

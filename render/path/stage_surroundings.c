@@ -1,4 +1,4 @@
-/* render/path/stage_light_environment.c: a direction of the environment, for the lanes that chose it.
+/* render/path/stage_surroundings.c: a direction of the environment, for the lanes that chose it.
  *
  * The tables and texels of a picture do not fit the caches, and one lane reads four places of them, each found by the one
  * before. So every step is a loop of its own, which tells the caches what the next one reads. */
@@ -44,7 +44,7 @@ static void turn(const environment *e, path_scratch *x, uint32_t n) {
     }
 }
 
-void STAGE(light_environment)(const path_context *c, batch *b) {
+void STAGE(surroundings)(const path_context *c, batch *b) {
     const environment *e = &c->world->lights.environment;
     path_scratch *x = &b->scratch;
     pick_rows(e, x, b->n);
