@@ -18,15 +18,6 @@
 #include "render/bsdf/compensation.h"
 #include "render/bsdf/lobes/diffuse.h"
 
-/* Selection weight of TRANSMISSION. Microfacets that face wo more than the surface does let light through where the
- * surface itself would reflect totally: what can be evaluated must keep a chance of being sampled. */
-KERNEL float bsdf_transmission_weight(unsigned mask, const bsdf *b) {
-    vec3 flat = complement(bsdf_interface_fresnel(mask, b, b->wo.z));
-    vec3 rough = complement(bsdf_interface_fresnel(mask, b, b->wo.z + b->alphas.x * (1.0f - b->wo.z)));
-    float least = 0.02f * average(b->tint);
-    return bsdf_is_straight(b) ? average(v3_mul(b->tint, flat)) : fm_max(average(v3_mul(b->tint, rough)), least);
-}
-
 /* Anisotropy after KHR_materials_anisotropy: the alpha along x grows, the one along y is the material's. Tables know one
  * alpha: the root of the mean square. */
 KERNEL void bsdf_make_roughness(unsigned mask, bsdf *b, const surface *s) {
@@ -56,25 +47,29 @@ KERNEL void bsdf_make_fresnel(unsigned mask, bsdf *b, const surface *s, float op
     b->far_ior = albedo_ior_node(1.0f / s->eta); /* η ≥ 1/1000 */
 }
 
-/* Selection weights, by what the lobes return; w_diffuse and w_below are known. */
+/* Selection weights, by what the lobes return; w_diffuse and w_below are known. Visible microfacets face wo more than a
+ * surface does that is seen from the side, and less than one that is seen from above. */
 KERNEL void bsdf_make_weights(unsigned mask, bsdf *b, float w_diffuse, float w_below) {
-    float w_reflect = average(bsdf_reflection_fresnel(mask, b, b->wo.z * (1.0f - 0.5f * b->alpha)));
-    float w_transmit = mask & BSDF_TRANSMISSIVE ? bsdf_transmission_weight(mask, b) : 0.0f, sum = 0.0f;
+    int straight = mask & BSDF_TRANSMISSIVE && bsdf_is_straight(b);
+    bsdf_facet mean = bsdf_facet_at(mask, b, b->wo.z + (straight ? 0.0f : b->alpha * (0.5f - b->wo.z)));
+    float w_glossy = average(mean.reflects), sum = 0.0f;
+    if (mask & BSDF_TRANSMISSIVE) {
+        w_glossy += average(mean.passes);
+        b->p_straight = mean.p_passes;
+    }
     if (mask & BSDF_LAYERED) {
         const bsdf_clearcoat *l = &b->clearcoat;
         float under = l->through * b->sheen.through, mu = l->wo.z * (1.0f - 0.5f * l->alpha);
-        w_reflect *= under;
-        w_transmit *= under;
+        w_glossy *= under;
         b->p_clearcoat = l->near * clearcoat_fresnel(mu);
         b->p_sheen = average(b->sheen.color) * l->through * albedo_sheen(b->wo.z, b->sheen.node);
         sum = b->p_clearcoat + b->p_sheen;
     }
-    sum = sum + w_diffuse + w_below + w_reflect + w_transmit;
+    sum = sum + w_diffuse + w_below + w_glossy;
     float scale = sum > 0.0f ? 1.0f / sum : 0.0f;
     b->p_diffuse = w_diffuse * scale;
     b->p_below = w_below * scale;
-    b->p_reflect = w_reflect * scale;
-    b->p_transmit = w_transmit * scale;
+    b->p_glossy = w_glossy * scale;
     b->p_clearcoat *= scale;
     b->p_sheen *= scale;
 }
@@ -134,67 +129,97 @@ KERNEL vec3 bsdf_albedo(unsigned mask, const bsdf *b) {
 /* f(wo, wi) |cos θi| of everything that is not a delta, and the density with which sample chooses wi. */
 typedef struct bsdf_value { vec3 value; float pdf; } bsdf_value;
 
-KERNEL bsdf_value bsdf_evaluate_above(unsigned mask, const bsdf *b, vec3 wi) {
-    float cosine = diffuse_pdf(wi, 1.0f);
-    if (!(mask & BSDF_GLOSSY)) return (bsdf_value){v3_scale(b->diffuse, cosine), b->p_diffuse * cosine};
-    vec3 up = {wi.x, wi.y, fm_max(wi.z, 0.0f)};
-    float mu = bsdf_table_mu(mask, b, up), full = bsdf_full(mu, b->alpha, b->roughness);
-    vec3 enters = complement(bsdf_coat_albedo(mask, b, mu, full));
-    vec3 wide = v3_madd(v3_mul(b->diffuse, enters), 1.0f - full, b->metal_again);
-    layers_value top = {v3_splat(0.0f), 0.0f};
-    float under = 1.0f;
+/* What a direction is asked for: mirrored up where it lies below. */
+typedef struct bsdf_toward {
+    vec3 wi, mirrored;
+    int up;
+    float cosine;   /* |cos θ|/π */
+    float mu, full; /* bsdf_table_mu and bsdf_full there */
+    layers_pass in;
+    float under;    /* layers_under of light of one event */
+} bsdf_toward;
+
+KERNEL bsdf_toward bsdf_look(unsigned mask, const bsdf *b, vec3 wi) {
+    bsdf_toward t = {.wi = wi, .mirrored = {wi.x, wi.y, fm_max(wi.z, 0.0f)}, .up = wi.z > 0.0f, .under = 1.0f};
+    if (mask & BSDF_TRANSMISSIVE) t.mirrored.z = fabsf(wi.z);
+    t.cosine = diffuse_pdf(wi, mask & BSDF_TRANSMISSIVE && !t.up ? -1.0f : 1.0f);
+    if (!(mask & BSDF_GLOSSY)) return t;
+    t.mu = bsdf_table_mu(mask, b, t.mirrored);
+    t.full = bsdf_full(t.mu, b->alpha, b->roughness);
     if (mask & BSDF_LAYERED) {
-        layers_pass in = layers_toward(b, up, 0);
-        top = layers_evaluate(b, up, in);
-        under = layers_under(b, in);
-        wide = v3_scale(wide, in.clearcoat * in.sheen);
+        t.in = layers_toward(b, t.mirrored, !t.up);
+        t.under = layers_under(b, t.in);
     }
-    if (mask & BSDF_TRANSMISSIVE) {
-        float loss = bsdf_interface_loss(b, b->near_ior, mu, full);
-        wide = v3_add(wide, v3_splat(under * b->again_near * loss));
-    }
-    vec3 h = v3_normalize(v3_add(b->wo, up)); /* wo.z > 0: not zero */
-    int live = (wi.z > 0.0f) & !bsdf_is_mirror(b->alphas.x);
-    vec2 alphas = {fm_max(b->alphas.x, GGX_ALPHA_MIN), fm_max(b->alphas.y, GGX_ALPHA_MIN)};
-    float value = live ? ggx_reflection_value(b->wo, up, h, alphas) : 0.0f;
-    float pdf = live ? ggx_reflection_pdf(b->wo, h, alphas) : 0.0f;
-    vec3 f = bsdf_reflection_fresnel(mask, b, v3_dot(b->wo, h));
-    bsdf_value v = {v3_madd(v3_scale(wide, cosine), value * under, f), b->p_diffuse * cosine + b->p_reflect * pdf};
-    if (mask & BSDF_LAYERED) v = (bsdf_value){v3_add(v.value, top.value), v.pdf + top.pdf};
-    return v;
+    return t;
 }
 
-KERNEL bsdf_value bsdf_evaluate_below(unsigned mask, const bsdf *b, vec3 wi) {
-    float cosine = diffuse_pdf(wi, -1.0f);
-    vec3 mirrored = {wi.x, wi.y, fm_max(-wi.z, 0.0f)};
-    float mu = bsdf_table_mu(mask, b, mirrored), full = bsdf_full(mu, b->alpha, b->roughness);
-    float again = b->again_far * bsdf_interface_loss(b, b->far_ior, mu, full);
-    vec2 alphas = {fm_max(b->alphas.x, GGX_ALPHA_MIN), fm_max(b->alphas.y, GGX_ALPHA_MIN)};
-    int live = (wi.z < 0.0f) & !bsdf_is_straight(b), thin = b->thin > 0.5f;
-    /* A thin wall passes light on as it would have reflected it, mirrored at the wall (KHR_materials_transmission). */
-    vec3 hr = v3_normalize(v3_add(b->wo, mirrored));
-    vec3 ht = ggx_refraction_normal(b->wo, wi, b->eta), h = v3_select(thin, hr, ht);
-    float pdf_solid = ggx_refraction_pdf(b->wo, wi, ht, alphas, b->eta);
-    float value_solid = pdf_solid * ggx_refraction_multiplier(wi, alphas, b->eta);
-    float pdf = thin ? ggx_reflection_pdf(b->wo, hr, alphas) : pdf_solid;
-    float value = thin ? ggx_reflection_value(b->wo, mirrored, hr, alphas) : value_solid;
-    vec3 f = complement(bsdf_interface_fresnel(mask, b, fm_max(v3_dot(b->wo, h), 0.0f)));
-    vec3 sum = v3_mul(b->tint, v3_madd(v3_splat(again * cosine), live ? value : 0.0f, f));
+/* DIFFUSE and BELOW. */
+KERNEL bsdf_value bsdf_evaluate_wide(unsigned mask, const bsdf *b, const bsdf_toward *t) {
+    if (!(mask & BSDF_GLOSSY)) return (bsdf_value){v3_scale(b->diffuse, t->cosine), b->p_diffuse * t->cosine};
+    vec3 enters = complement(bsdf_coat_albedo(mask, b, t->mu, t->full));
+    vec3 value = v3_madd(v3_mul(b->diffuse, enters), 1.0f - t->full, b->metal_again);
+    float pdf = b->p_diffuse;
     if (mask & BSDF_LAYERED) {
-        layers_pass in = layers_toward(b, mirrored, 1);
-        vec3 enters = complement(bsdf_coat_albedo(mask, b, mu, full));
-        vec3 diffuse = v3_scale(v3_mul(b->passes, enters), in.clearcoat * in.sheen * cosine);
-        sum = v3_madd(diffuse, layers_under(b, in), sum);
+        value = v3_select(t->up, value, v3_mul(b->passes, enters));
+        value = v3_scale(value, t->in.clearcoat * t->in.sheen);
     }
-    return (bsdf_value){sum, b->p_below * cosine + (live ? b->p_transmit * pdf : 0.0f)};
+    if (mask & BSDF_TRANSMISSIVE) {
+        albedo_node ior = {t->up ? b->near_ior.index : b->far_ior.index,
+                           t->up ? b->near_ior.fraction : b->far_ior.fraction};
+        float again = t->under * bsdf_interface_loss(b, ior, t->mu, t->full);
+        if (!(mask & BSDF_LAYERED)) value = v3_scale(value, t->up ? 1.0f : 0.0f);
+        vec3 share = v3_select(t->up, v3_splat(b->again_near), v3_scale(b->tint, b->again_far));
+        value = v3_madd(value, again, share);
+        pdf = t->up ? b->p_diffuse : b->p_below;
+    }
+    return (bsdf_value){v3_scale(value, t->cosine), pdf * t->cosine};
+}
+
+/* REFLECTION and TRANSMISSION: a microfacet is chosen first, then what it does. A thin wall passes light on as it would
+ * have reflected it, mirrored at the wall (KHR_materials_transmission). */
+KERNEL bsdf_value bsdf_evaluate_glossy(unsigned mask, const bsdf *b, const bsdf_toward *t) {
+    vec3 h = v3_normalize(v3_add(b->wo, t->mirrored)); /* wo.z > 0: not zero */
+    float alpha = b->alphas.x; /* a choice between numbers: between truth values it does not vectorise */
+    vec2 alphas = {fm_max(b->alphas.x, GGX_ALPHA_MIN), fm_max(b->alphas.y, GGX_ALPHA_MIN)};
+    float value = ggx_reflection_value(b->wo, t->mirrored, h, alphas), pdf = ggx_reflection_pdf(b->wo, h, alphas);
+    float c = v3_dot(b->wo, h);
+    if (mask & BSDF_TRANSMISSIVE) {
+        int bent = (t->up == 0) & (b->thin < 0.5f);
+        vec3 ht = ggx_refraction_normal(b->wo, t->wi, b->eta);
+        float pdf_bent = ggx_refraction_pdf(b->wo, t->wi, ht, alphas, b->eta);
+        float value_bent = pdf_bent * ggx_refraction_multiplier(t->wi, alphas, b->eta);
+        c = bent ? fm_max(v3_dot(b->wo, ht), 0.0f) : c;
+        value = bent ? value_bent : value;
+        pdf = bent ? pdf_bent : pdf;
+        alpha = t->up ? alpha : bsdf_transmission_alpha(b);
+    }
+    int live = (t->mirrored.z > 0.0f) & !bsdf_is_mirror(alpha);
+    bsdf_facet f = bsdf_facet_at(mask, b, c);
+    float p = b->p_glossy;
+    if (mask & BSDF_TRANSMISSIVE) {
+        float passes = bsdf_is_straight(b) ? b->p_straight : f.p_passes;
+        p *= t->up ? 1.0f - passes : passes;
+        f.reflects = v3_select(t->up, f.reflects, f.passes);
+    }
+    return (bsdf_value){v3_scale(f.reflects, live ? value * t->under : 0.0f), live ? p * pdf : 0.0f};
+}
+
+/* top: what layers do towards wi, by the clear coat's own horizon; written under BSDF_LAYERED. */
+KERNEL bsdf_value bsdf_evaluate_toward(unsigned mask, const bsdf *b, const bsdf_toward *t, layers_value *top) {
+    bsdf_value v = bsdf_evaluate_wide(mask, b, t);
+    if (!(mask & BSDF_GLOSSY)) return v;
+    bsdf_value glossy = bsdf_evaluate_glossy(mask, b, t);
+    v = (bsdf_value){v3_add(v.value, glossy.value), v.pdf + glossy.pdf};
+    if (!(mask & BSDF_LAYERED)) return v;
+    *top = layers_evaluate(b, t->wi, t->in);
+    float above = t->up ? 1.0f : 0.0f;
+    return (bsdf_value){v3_madd(v.value, above, top->value), v.pdf + above * top->pdf};
 }
 
 KERNEL bsdf_value bsdf_evaluate(unsigned mask, const bsdf *b, vec3 wi) {
-    bsdf_value above = bsdf_evaluate_above(mask, b, wi);
-    if (!(mask & BSDF_TRANSMISSIVE)) return above;
-    bsdf_value below = bsdf_evaluate_below(mask, b, wi);
-    int up = wi.z > 0.0f;
-    return (bsdf_value){v3_select(up, above.value, below.value), up ? above.pdf : below.pdf};
+    bsdf_toward t = bsdf_look(mask, b, wi);
+    layers_value top = {v3_splat(0.0f), 0.0f};
+    return bsdf_evaluate_toward(mask, b, &t, &top);
 }
 
 typedef struct bsdf_sampled {
@@ -207,25 +232,28 @@ typedef struct bsdf_sampled {
     int crosses;     /* wi lies on the far side */
 } bsdf_sampled;
 
-/* Which lobe a number in [0, 1) chooses: flags of 0 and 1, one of them 1 but for black surfaces. */
+/* Which lobe a number in [0, 1) chooses: flags of 0 and 1, one of them 1 but for black surfaces. p_reflects: of the
+ * microfacet that glossy lobes meet, not to let light pass. */
 typedef struct bsdf_choice { int below, clearcoat, sheen, reflect, transmit; } bsdf_choice;
 
-KERNEL bsdf_choice bsdf_choose(unsigned mask, const bsdf *b, float lobe) {
-    bsdf_choice c = {.reflect = lobe >= b->p_diffuse};
-    float layers = 0.0f;
-    if (mask & BSDF_LAYERED) {
-        float from = b->p_diffuse + b->p_below, to = from + b->p_clearcoat;
-        layers = b->p_clearcoat + b->p_sheen;
-        c.clearcoat = (lobe >= from) & (lobe < to);
-        c.sheen = (lobe >= to) & (lobe < from + layers);
-    }
+KERNEL bsdf_choice bsdf_choose(unsigned mask, const bsdf *b, float lobe, float p_reflects) {
+    float from = b->p_diffuse;
+    bsdf_choice c = {0};
     if (mask & BSDF_TRANSMISSIVE) {
-        float below = b->p_diffuse + b->p_below;
-        c.below = c.reflect & (lobe < below);
-        c.transmit = (lobe >= below + layers + b->p_reflect) & (b->p_transmit > 0.0f);
-        c.reflect = c.reflect & !c.below & !c.transmit;
+        c.below = (lobe >= from) & (lobe < from + b->p_below);
+        from += b->p_below;
     }
-    c.reflect = c.reflect & !c.clearcoat & !c.sheen;
+    if (mask & BSDF_LAYERED) {
+        float to = from + b->p_clearcoat;
+        c.clearcoat = (lobe >= from) & (lobe < to);
+        from += b->p_clearcoat + b->p_sheen;
+        c.sheen = (lobe >= to) & (lobe < from);
+    }
+    c.reflect = lobe >= from;
+    if (mask & BSDF_TRANSMISSIVE) {
+        c.transmit = (lobe >= from + b->p_glossy * p_reflects) & (p_reflects < 1.0f);
+        c.reflect = c.reflect & !c.transmit;
+    }
     return c;
 }
 
@@ -239,21 +267,44 @@ KERNEL vec3 bsdf_sample_clearcoat(const bsdf *b, vec2 u) {
     return frame_to_world(&l->frame, bsdf_mirror(l->wo, h));
 }
 
-/* f cos/p of the delta that was chosen, towards wi. */
-KERNEL vec3 bsdf_at_delta(unsigned mask, const bsdf *b, bsdf_choice c, vec3 wi) {
-    vec3 f = v3_scale(bsdf_reflection_fresnel(mask, b, b->wo.z), 1.0f / fm_max(b->p_reflect, 1e-30f));
+/* f cos/p of the delta that was chosen, of a microfacet in the surface. */
+KERNEL vec3 bsdf_at_delta(unsigned mask, const bsdf *b, bsdf_choice c, const bsdf_facet *flat, float under) {
+    vec3 f = v3_scale(flat->reflects, 1.0f / fm_max(b->p_glossy * (1.0f - flat->p_passes), 1e-30f));
     if (mask & BSDF_TRANSMISSIVE) {
-        vec3 passes = v3_mul(b->tint, complement(bsdf_interface_fresnel(mask, b, b->wo.z)));
         float squeeze = b->thin > 0.5f ? 1.0f : b->eta * b->eta; /* radiance narrows by 1/η² */
-        f = v3_select(c.transmit, v3_scale(passes, 1.0f / fm_max(b->p_transmit * squeeze, 1e-30f)), f);
+        vec3 passes = v3_scale(flat->passes, 1.0f / fm_max(b->p_glossy * flat->p_passes * squeeze, 1e-30f));
+        f = v3_select(c.transmit, passes, f);
     }
     if (mask & BSDF_LAYERED) {
-        layers_pass up = layers_toward(b, wi, 0), down = layers_toward(b, wi, 1);
-        float under = c.transmit ? layers_under(b, down) : layers_under(b, up);
         float coat = b->clearcoat.gloss * clearcoat_fresnel(b->clearcoat.wo.z) / fm_max(b->p_clearcoat, 1e-30f);
         f = v3_select(c.clearcoat, v3_splat(coat), v3_scale(f, under));
     }
     return f;
+}
+
+/* Where REFLECTION and TRANSMISSION lead, by way of a microfacet. */
+typedef struct bsdf_facet_sampled {
+    bsdf_facet facet; /* in the surface where one of them is a delta */
+    vec3 reflected, passed;
+    int straight;
+} bsdf_facet_sampled;
+
+KERNEL bsdf_facet_sampled bsdf_sample_facet(unsigned mask, const bsdf *b, vec2 direction) {
+    vec2 alphas = {fm_max(b->alphas.x, GGX_ALPHA_MIN), fm_max(b->alphas.y, GGX_ALPHA_MIN)};
+    vec3 h = ggx_sample_normal(b->wo, alphas, direction);
+    int mirror = bsdf_is_mirror(b->alphas.x);
+    bsdf_facet_sampled r = {.reflected = bsdf_mirror(b->wo, v3_select(mirror, v3(0, 0, 1), h)), .straight = mirror};
+    if (mask & BSDF_TRANSMISSIVE) {
+        r.straight = bsdf_is_straight(b);
+        h = v3_select(r.straight, v3(0, 0, 1), h);
+        vec3 unbent = r.straight ? v3_neg(b->wo) : v3(r.reflected.x, r.reflected.y, -r.reflected.z);
+        vec3 bent = ggx_refract(b->wo, h, v3_dot(b->wo, h), b->eta);
+        r.passed = v3_select(b->thin > 0.5f, unbent, bent);
+        r.facet = bsdf_facet_at(mask, b, v3_dot(b->wo, h));
+    } else {
+        r.facet = bsdf_facet_at(mask, b, b->wo.z);
+    }
+    return r;
 }
 
 /* u.lobe chooses the lobe, u.direction its direction. */
@@ -262,44 +313,36 @@ KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 d
     if (!(mask & BSDF_GLOSSY))
         return (bsdf_sampled){wi, v3_scale(b->diffuse, b->p_diffuse), b->p_diffuse * diffuse_pdf(wi, 1.0f), 0, 0};
 
-    bsdf_choice chosen = bsdf_choose(mask, b, lobe);
-    int straight = 0, possible = 1, hangs = 0;
-    vec2 alphas = {fm_max(b->alphas.x, GGX_ALPHA_MIN), fm_max(b->alphas.y, GGX_ALPHA_MIN)};
-    vec3 h = ggx_sample_normal(b->wo, alphas, direction);
-    vec3 mirrored = bsdf_mirror(b->wo, v3_select(bsdf_is_mirror(b->alphas.x), v3(0, 0, 1), h));
+    bsdf_facet_sampled met = bsdf_sample_facet(mask, b, direction);
+    bsdf_choice chosen = bsdf_choose(mask, b, lobe, 1.0f - met.facet.p_passes);
+    int possible = 1, hangs = 0;
     if (mask & BSDF_TRANSMISSIVE) {
-        straight = bsdf_is_straight(b);
         wi.z = chosen.below ? -wi.z : wi.z;
-        vec3 ht = v3_select(straight, v3(0, 0, 1), h);
-        float c = v3_dot(b->wo, ht);
-        possible = !chosen.transmit | (b->thin > 0.5f) | (1.0f - c * c < b->eta * b->eta);
-        vec3 bent = ggx_refract(b->wo, ht, c, b->eta);
-        vec3 unbent = straight ? v3_neg(b->wo) : v3(mirrored.x, mirrored.y, -mirrored.z);
-        wi = v3_select(chosen.transmit, v3_select(b->thin > 0.5f, unbent, bent), wi);
+        wi = v3_select(chosen.transmit, met.passed, wi);
     }
-    wi = v3_select(chosen.reflect, mirrored, wi);
+    wi = v3_select(chosen.reflect, met.reflected, wi);
     /* In numbers: gcc makes of the flags a choice between truth values, which does not vectorise. */
-    float spread = (chosen.reflect ? b->alphas.x : 1.0f) * (chosen.transmit & straight ? 0.0f : 1.0f);
+    float spread = (chosen.reflect ? b->alphas.x : 1.0f) * (chosen.transmit & met.straight ? 0.0f : 1.0f);
     if (mask & BSDF_LAYERED) {
         wi = v3_select(chosen.clearcoat, bsdf_sample_clearcoat(b, direction), wi);
         wi = v3_select(chosen.sheen, sheen_sample(direction, b->sheen.roughness), wi);
         spread *= chosen.clearcoat ? b->clearcoat.alpha : 1.0f;
         int own = v3_dot(wi, b->clearcoat.frame.z) > 0.0f;
-        possible = possible & ((chosen.clearcoat == 0) | own);
+        possible = (chosen.clearcoat == 0) | own;
         hangs = chosen.clearcoat & own & (wi.z <= 0.0f);
     }
     int delta = spread < GGX_ALPHA_MIN;
-    /* A microfacet may send light to the wrong side of the surface, or refuse to refract: absorbed; the energy comes
-     * back as multiple scattering. */
+    /* A microfacet may send light to the wrong side of the surface: absorbed; the energy comes back as multiple
+     * scattering. */
     int lives = ((chosen.transmit | chosen.below) ? wi.z < 0.0f : wi.z > 0.0f) & possible;
-    bsdf_value v = bsdf_evaluate(mask, b, wi);
+    bsdf_toward t = bsdf_look(mask, b, wi);
+    layers_value top = {v3_splat(0.0f), 0.0f};
+    bsdf_value v = bsdf_evaluate_toward(mask, b, &t, &top);
     float scale = lives & (v.pdf > 0.0f) ? 1.0f / v.pdf : 0.0f;
-    vec3 at_delta = v3_scale(bsdf_at_delta(mask, b, chosen, wi), lives | hangs ? 1.0f : 0.0f);
+    vec3 at_delta = v3_scale(bsdf_at_delta(mask, b, chosen, &met.facet, t.under), lives | hangs ? 1.0f : 0.0f);
     vec3 multiplier = v3_scale(v.value, scale);
-    if (mask & BSDF_LAYERED) { /* a clear coat has its own horizon */
-        layers_value coat = layers_evaluate(b, wi, layers_toward(b, wi, 0));
-        multiplier = v3_select(hangs, v3_scale(coat.value, 1.0f / fm_max(coat.pdf, 1e-30f)), multiplier);
-    }
+    if (mask & BSDF_LAYERED) /* a clear coat has its own horizon */
+        multiplier = v3_select(hangs, v3_scale(top.value, 1.0f / fm_max(top.pdf, 1e-30f)), multiplier);
     return (bsdf_sampled){wi, v3_select(delta, at_delta, multiplier), lives & !delta & !hangs ? v.pdf : 0.0f, delta,
                           chosen.transmit | chosen.below};
 }

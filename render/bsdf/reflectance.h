@@ -39,12 +39,21 @@ KERNEL vec3 bsdf_filmed(const bsdf *b, float c, vec3 f) {
     return v3_lerp(f, v3_madd(on_metal, b->film.dielectric, thin_film_reflectance(&t, b->f0)), b->film.share);
 }
 
-/* REFLECTION's. */
-KERNEL vec3 bsdf_reflection_fresnel(unsigned mask, const bsdf *b, float c) {
+/* What a microfacet does to light that meets it at a cosine on wo's side: REFLECTION's and TRANSMISSION's F, and the
+ * probability with which sample lets it pass. */
+typedef struct bsdf_facet {
+    vec3 reflects, passes;
+    float p_passes;
+} bsdf_facet;
+
+KERNEL bsdf_facet bsdf_facet_at(unsigned mask, const bsdf *b, float c) {
     vec3 f = v3_madd(b->reflect0, fresnel_schlick_weight(c), b->reflect1);
     if (mask & BSDF_LAYERED) f = bsdf_filmed(b, c, f);
-    if (mask & BSDF_TRANSMISSIVE) f = v3_madd(f, b->interface, bsdf_interface_fresnel(mask, b, c));
-    return f;
+    if (!(mask & BSDF_TRANSMISSIVE)) return (bsdf_facet){f, v3_splat(0.0f), 0.0f};
+    vec3 interface = bsdf_interface_fresnel(mask, b, c), passes = v3_mul(b->tint, complement(interface));
+    vec3 reflects = v3_madd(f, b->interface, interface);
+    float through = average(passes);
+    return (bsdf_facet){reflects, passes, through / fm_max(through + average(reflects), 1e-30f)};
 }
 
 /* Tables are read unconditionally and blended by flags of 0 and 1: a load under a condition would not vectorise. */

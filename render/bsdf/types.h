@@ -95,7 +95,8 @@ typedef struct bsdf {
     float again_near, again_far;    /* multiple scattering of the interface, but for its factors at wi */
     albedo_node near_ior, far_ior;  /* of albedo_interface, seen from wo's side and from the far side */
     vec3 wide;                      /* albedo of DIFFUSE and BELOW together */
-    float p_diffuse, p_below, p_reflect, p_transmit; /* selection probabilities; sum 1, or all 0: black */
+    float p_diffuse, p_below, p_glossy; /* selection probabilities, glossy: REFLECTION and TRANSMISSION; sum 1, or all 0 */
+    float p_straight;               /* of glossy, what passes straight on where that is a delta */
     /* LAYERED */
     vec3 passes;                    /* diffuse transmission, but for its factor at wi */
     bsdf_film film;
@@ -107,10 +108,11 @@ typedef struct bsdf {
 KERNEL int bsdf_is_mirror(float alpha) { return alpha < GGX_ALPHA_MIN; }
 /* Refraction spreads less than reflection, and its half vector resolves less: by |η − 1| over the larger index. The same
  * from either side. */
-KERNEL int bsdf_is_straight(const bsdf *b) {
+KERNEL float bsdf_transmission_alpha(const bsdf *b) {
     float spread = fabsf(b->eta - 1.0f) / fm_max(b->eta, 1.0f);
-    return b->alphas.x * (b->thin > 0.5f ? 1.0f : spread) < GGX_ALPHA_MIN;
+    return b->alphas.x * (b->thin > 0.5f ? 1.0f : spread);
 }
+KERNEL int bsdf_is_straight(const bsdf *b) { return bsdf_transmission_alpha(b) < GGX_ALPHA_MIN; }
 
 KERNEL float average(vec3 v) { return (v.x + v.y + v.z) * (1.0f / 3.0f); }
 KERNEL vec3 complement(vec3 v) { return v3_sub(v3_splat(1.0f), v); }

@@ -12,6 +12,9 @@ enum { D = 0, G = BSDF_GLOSSY, T = BSDF_GLOSSY | BSDF_TRANSMISSIVE, L = T | BSDF
 #define BROWN {0.5f, 0.3f, 0.1f}
 
 #define NO_LAYERS .clearcoat = 0
+/* What nearly smooth interfaces give back of their loss they give back near the horizon, but are sampled by the cosine;
+ * microfacets that reflect at grazing angles alone are not chosen by what they reflect. */
+#define UNEVEN(moment) .most_moment = moment
 #define ALL_LAYERS                                                                                                     \
     .clearcoat = 0.7f, .clearcoat_roughness = 0.3f, .sheen = GOLD, .sheen_roughness = 0.4f, .anisotropy = 0.5f,        \
     .film = 0.5f, .film_ior = 1.4f, .film_thickness = 350, .pass = 0.5f, .pass_color = BROWN, .off_white = 0.1f
@@ -22,7 +25,7 @@ const bsdf_case bsdf_cases[] = {
     {"brown lambert", D, 0, 0, 1.5f, 0, 1, 0, 0, BROWN, WHITE, NO_LAYERS},
     {"metal", G, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
     {"gold", G, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, NO_LAYERS},
-    {"black metal", G, 1, 1, 1.5f, 0, 1, 0, 0, BLACK, WHITE, NO_LAYERS},
+    {"black metal", G, 1, 1, 1.5f, 0, 1, 0, 0, BLACK, WHITE, UNEVEN(8)},
     {"coat 1.0", G, 0, 1, 1.0f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
     {"coat 1.33", G, 0, 1, 1.33f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
     {"coat 1.5", G, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
@@ -34,11 +37,11 @@ const bsdf_case bsdf_cases[] = {
     {"thin wall", T, 0, 1, 1.5f, 1, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
     {"gold thin wall", T, 0, 1, 1.5f, 1, 1, 0, 0, GOLD, WHITE, NO_LAYERS},
     {"glass 1.0", T, 0, 1, 1.0f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
-    {"glass 1.05 in", T, 0, 1, 1.05f, 1, 0, 1, 1, WHITE, WHITE, NO_LAYERS},
-    {"glass 1.05", T, 0, 1, 1.05f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"glass 1.05 in", T, 0, 1, 1.05f, 1, 0, 1, 1, WHITE, WHITE, UNEVEN(4)},
+    {"glass 1.05", T, 0, 1, 1.05f, 1, 0, 0, 1, WHITE, WHITE, UNEVEN(4)},
     {"glass 1.33", T, 0, 1, 1.33f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
     {"glass 1.33 in", T, 0, 1, 1.33f, 1, 0, 1, 1, WHITE, WHITE, NO_LAYERS},
-    {"glass 1.5", T, 0, 1, 1.5f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"glass 1.5", T, 0, 1, 1.5f, 1, 0, 0, 1, WHITE, WHITE, UNEVEN(12)},
     {"glass 1.5 in", T, 0, 1, 1.5f, 1, 0, 1, 1, WHITE, WHITE, NO_LAYERS},
     {"glass 2.4", T, 0, 1, 2.4f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
     {"glass 2.4 in", T, 0, 1, 2.4f, 1, 0, 1, 1, WHITE, WHITE, NO_LAYERS},
@@ -62,7 +65,7 @@ const bsdf_case bsdf_cases[] = {
     {"sheen on lambert", L, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .sheen = WHITE, .sheen_roughness = 0.5f, .off_white = 0.02f},
     {"narrow sheen on plastic", L, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .sheen = GOLD, .sheen_roughness = 0.1f},
     {"sheen on black", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .sheen = GOLD, .sheen_roughness = 1},
-    {"sheen of no roughness", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .sheen = WHITE, .sheen_roughness = 0},
+    {"sheen of no roughness", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .sheen = WHITE, .sheen_roughness = 0, UNEVEN(5)},
     {"half anisotropic metal", L, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 0.5f, .off_white = 0.1f},
     {"anisotropic metal", L, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 1, .off_white = 0.3f},
     {"anisotropic plastic", L, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .anisotropy = 0.7f, .off_white = 0.1f},

@@ -24,6 +24,7 @@ typedef struct bsdf_case {
     float pass; /* diffuse transmission */
     vec3 pass_color;
     float off_white; /* what compensation may miss, beside what tables do */
+    float most_moment; /* that E[m²]/E[m]² of a multiplier may have, where it is more than of others: test_bsdf.c */
 } bsdf_case;
 
 extern const bsdf_case bsdf_cases[];

@@ -35,7 +35,7 @@ void chart_make(chart *c, const probe *p) {
     double y = glossy ? fmax((double)p->bsdf.alphas.y, least) : alpha;
     *c = (chart){.probe = p, .a2 = alpha * alpha, .stretch = y / alpha, .wo = to_double(p->bsdf.wo), .refracts = refracts, .mirrors = !solid || !interface,
                  .widths = {alpha * alpha, WIDE2, GRAZING2}, .width_count = 3};
-    if (p->mask & BSDF_LAYERED && p->bsdf.p_sheen > 0 && p->bsdf.p_reflect == 0 && p->bsdf.p_clearcoat == 0)
+    if (p->mask & BSDF_LAYERED && p->bsdf.p_sheen > 0 && p->bsdf.p_glossy == 0 && p->bsdf.p_clearcoat == 0)
         c->sheen = (double)(SHEEN_SPREAD * p->bsdf.sheen.roughness);
     float coat = p->bsdf.clearcoat.alpha;
     if (p->mask & BSDF_LAYERED && p->bsdf.clearcoat.near > 0 && !bsdf_is_mirror(coat))

@@ -1,5 +1,5 @@
 /* Sampling against densities and values, for every row of bsdf_cases.c: what is drawn is what pdf says, multipliers are
- * value over pdf, and delta lobes are known to sample alone.
+ * value over pdf and hardly vary, and delta lobes are known to sample alone.
  *
  * All tests are joint at the level of one false alarm in a thousand (Šidák); seeds are fixed. */
 #include <setjmp.h>
@@ -26,6 +26,7 @@ typedef struct setting {
     probe probe;
     const char *name;
     float roughness, cosine;
+    double most_moment; /* 0: MOST_MOMENT */
     stream random;
 } setting;
 
@@ -41,14 +42,23 @@ static void __attribute__((format(printf, 2, 3))) complain(const setting *s, con
         print_error("%s, roughness %g, cos %g: %s\n", s->name, (double)s->roughness, (double)s->cosine, text);
 }
 
-/* What was tested, and the least of the chi-square tests' p-values. */
-static struct { int chi_squares; double least_p; const char *name; float roughness, cosine; } grid = {.least_p = 1};
+/* What was tested, the least of the chi-square tests' p-values, and the largest relative second moment. */
+typedef struct place { const char *name; float roughness, cosine; } place;
+static struct { int chi_squares; double least_p, most_moment; place least_at, most_at; } grid = {.least_p = 1};
+
+static place place_of(const setting *s) { return (place){s->name, s->roughness, s->cosine}; }
 
 static void note_chi_square(const setting *s, double p) {
     grid.chi_squares++;
     if (p >= grid.least_p) return;
     grid.least_p = p;
-    grid.name = s->name, grid.roughness = s->roughness, grid.cosine = s->cosine;
+    grid.least_at = place_of(s);
+}
+
+static void note_moment(const setting *s, double moment) {
+    if (moment <= grid.most_moment) return;
+    grid.most_moment = moment;
+    grid.most_at = place_of(s);
 }
 
 static void print_grid(void) {
@@ -57,7 +67,10 @@ static void print_grid(void) {
                   "level of %.3g, %g jointly\n", bsdf_case_count, ROUGHNESSES, COSINES, grid.chi_squares, SAMPLES,
                   sidak(LEVEL, tests), LEVEL);
     print_message("smallest p-value %.3g (%s, roughness %g, cos %g); the least of as many even ones has a mean of %.3g\n",
-                  grid.least_p, grid.name, (double)grid.roughness, (double)grid.cosine, 1.0 / (grid.chi_squares + 1));
+                  grid.least_p, grid.least_at.name, (double)grid.least_at.roughness, (double)grid.least_at.cosine,
+                  1.0 / (grid.chi_squares + 1));
+    print_message("largest E[m^2]/E[m]^2 of a multiplier %.3g (%s, roughness %g, cos %g)\n", grid.most_moment,
+                  grid.most_at.name, (double)grid.most_at.roughness, (double)grid.most_at.cosine);
 }
 
 static void for_each_setting(void (*check)(setting *, double tests)) {
@@ -70,7 +83,7 @@ static void for_each_setting(void (*check)(setting *, double tests)) {
                 uint32_t seed = hash_triple((uint32_t)c, (uint32_t)r, (uint32_t)k);
                 vec3 wo = direction_at((double)cosines[k], (double)unit_float(hash32(seed)));
                 setting s = {probe_make(subjects, roughnesses[r], wo), bsdf_cases[c].name, roughnesses[r], cosines[k],
-                             {seed, 0}};
+                             (double)bsdf_cases[c].most_moment, {seed, 0}};
                 check(&s, (double)bsdf_case_count * ROUGHNESSES * COSINES);
             }
     }
@@ -93,23 +106,46 @@ static bool is_absorbed(const setting *s, const bsdf_sampled *r) {
 }
 
 /* What midpoints and single precision leave of an integral: relative to 1 for probabilities, to the value for values. A
- * streak that is refracted close to the horizon is cut by it where few points lie. */
+ * streak that is refracted close to the horizon is cut by it where few points lie; and few lie where narrow sheen does,
+ * when half vectors chart it. */
 #define QUADRATURE 6e-3
 #define QUADRATURE_STREAK 1.5e-2
+
+static double quadrature_error(const chart *c) {
+    bool streak = c->refracts && c->stretch < 1, sheen = c->probe->mask & BSDF_LAYERED && c->probe->bsdf.p_sheen > 0;
+    return streak || (sheen && !(c->sheen > 0)) ? QUADRATURE_STREAK : QUADRATURE;
+}
+
+/* A path's variance grows with E[m²]/E[m]² of its multipliers, in power: 1 where each is the mean, more where lobes are
+ * chosen otherwise than what they return, or return it unevenly. At roughness 1, what misses the hemisphere makes 1.8.
+ * What returns less than LEAST_POWER adds no noise that could be seen. */
+#define MOST_MOMENT 2.0
+#define LEAST_POWER 1e-3
+
+static void check_moment(const setting *s, const tally *power, double squares) {
+    if (!(power->mean > LEAST_POWER)) return;
+    double moment = squares / SAMPLES / (power->mean * power->mean);
+    double most = s->most_moment > 0 ? s->most_moment : MOST_MOMENT;
+    note_moment(s, moment);
+    if (!(moment < most)) complain(s, "E[m²]/E[m]² of the multiplier is %.2f, at most %.2f is expected", moment, most);
+}
 
 static void check_counts(setting *s, double tests) {
     chart c;
     chart_make(&c, &s->probe);
     chart_sums e = chart_integrate(&c);
-    double off_chart = c.refracts && c.stretch < 1 ? QUADRATURE_STREAK : QUADRATURE;
+    double off_chart = quadrature_error(&c);
     dvec3 sum = d3_add(e.value[0], e.value[1]);
     double integral[3] = {sum.x, sum.y, sum.z};
-    double counts[CHART_CELLS + 1] = {0}, wanted[CHART_CELLS + 1], all = 0;
-    tally means[3] = {{0}};
+    double counts[CHART_CELLS + 1] = {0}, wanted[CHART_CELLS + 1], all = 0, squares = 0;
+    tally means[3] = {{0}}, power = {0};
     for (int n = 0; n < SAMPLES; n++) {
         bsdf_sampled r = draw(s, &s->random);
         bool lost = !(r.pdf > 0) || is_absorbed(s, &r);
         counts[lost ? CHART_CELLS : chart_cell(&c, (dvec3){(double)r.wi.x, (double)r.wi.y, (double)r.wi.z})]++;
+        double m = (double)average(r.multiplier) * (r.wi.z < 0 ? probe_squeeze(&s->probe) : 1);
+        tally_add(&power, m);
+        squares += m * m;
         tally_add(&means[0], r.pdf > 0 ? (double)r.multiplier.x : 0);
         tally_add(&means[1], r.pdf > 0 ? (double)r.multiplier.y : 0);
         tally_add(&means[2], r.pdf > 0 ? (double)r.multiplier.z : 0);
@@ -122,13 +158,10 @@ static void check_counts(setting *s, double tests) {
     double p = chi_square_p(counts, wanted, CHART_CELLS + 1);
     note_chi_square(s, p);
     if (p < sidak(LEVEL, tests)) complain(s, "sample does not follow pdf (p = %g)", p);
-    const bsdf *b = &s->probe.bsdf;
-    bool hardly = s->probe.mask & BSDF_TRANSMISSIVE && b->p_transmit > 0 && b->p_transmit < 0.05f;
-    double rare = hardly ? 1 / (double)(b->p_transmit * b->eta * b->eta) / SAMPLES : 0;
+    check_moment(s, &power, squares);
     for (int k = 0; k < 3; k++) {
-        /* Of events that are expected less than twenty times the samples tell no variance: they are Poisson's; nor of
-         * the few refractions of a lobe that is hardly chosen, each of which weighs 1/(p η²). */
-        double least = fmax(sqrt(fmin(integral[k], 20.0 / SAMPLES) / SAMPLES), rare), mean = means[k].mean;
+        /* Of events that are expected less than twenty times the samples tell no variance: they are Poisson's. */
+        double least = sqrt(fmin(integral[k], 20.0 / SAMPLES) / SAMPLES), mean = means[k].mean;
         double off = fmax(fabs(mean - integral[k]) - off_chart * integral[k] - 1e-5, 0);
         if (normal_tail(off / fmax(tally_error(&means[k]), least + 1e-9)) < sidak(LEVEL, 3 * tests))
             complain(s, "the mean multiplier is %.5f ± %.5f, the integral %.5f", mean, tally_error(&means[k]), integral[k]);

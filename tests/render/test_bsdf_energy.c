@@ -140,13 +140,15 @@ static void smooth_surfaces_are_known(void **state) {
 }
 
 /* What rounding leaves of f: the half vector is found from its sum, against the width of the lobe; where light leaves the
- * denser side near the critical angle, 1 − F from the square of a small cosine. */
+ * denser side near the critical angle, 1 − F from the square of a small cosine, and F from a difference near 0. */
 static double rounding(const probe *p, float roughness, vec3 wi) {
     bool refracts = wi.z < 0 && p->surface.thin < 0.5f;
     vec3 sum = v3_madd(p->bsdf.wo, refracts ? p->surface.eta : 1, v3(wi.x, wi.y, refracts ? wi.z : fabsf(wi.z)));
     double length = (double)v3_length(sum), alpha = fmax((double)(roughness * roughness), (double)GGX_ALPHA_MIN);
     double c = fmin(fabs((double)v3_dot(sum, p->bsdf.wo)), fabs((double)v3_dot(sum, wi))) / length;
-    return 1e-4 + 2e-6 / (alpha * length) + (refracts ? 5e-7 / (c * c) : 0);
+    double eta = (double)p->bsdf.eta, g2 = fabs(eta * eta - 1 + c * c);
+    bool denser = !refracts && p->mask & BSDF_TRANSMISSIVE && eta < 1;
+    return 1e-4 + 2e-6 / (alpha * length) + (refracts ? 5e-7 / (c * c) : 0) + (denser ? 2e-6 / sqrt(g2 + 1e-6) : 0);
 }
 
 /* f is the same in both directions; across a solid's boundary, f over the squared index of the side where light comes
@@ -194,10 +196,10 @@ static bool is_weight(vec3 v) { return is_real(v) && v.x >= 0 && v.y >= 0 && v.z
 static void check_sanity(const subject *s, float roughness, vec3 wo, stream *random) {
     probe p = probe_make(s, roughness, wo);
     const bsdf *b = &p.bsdf;
-    float sum = b->p_diffuse + b->p_below + b->p_reflect + b->p_transmit;
+    float sum = b->p_diffuse + b->p_below + b->p_glossy;
     vec3 aov = probe_albedo(&p);
     bool good = (fabsf(sum - 1) < 1e-5f || sum == 0) && is_weight(aov) && v3_max(aov) < 1.1f && b->p_diffuse >= 0 &&
-                b->p_below >= 0 && b->p_reflect >= 0 && b->p_transmit >= 0;
+                b->p_below >= 0 && b->p_glossy >= 0;
     for (int n = 0; n < 4; n++) {
         const float last = 0x1.fffffep-1f;
         float lobe = n == 0 ? 0 : n == 1 ? last : stream_next(random);
