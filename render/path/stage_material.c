@@ -96,11 +96,11 @@ static void apply_anisotropy(const world_material *m, path_scratch *x, uint32_t 
     x->along_v[i] = u * m->anisotropy_y + v * m->anisotropy_x;
 }
 
-/* A texture as one lane sees it. */
-typedef struct view { const world_texture *texture; vec2 uv; int32_t level; } view;
+/* A texture as one lane sees it; NULL: its material has none. */
+typedef struct view { const world_texture *texture; texture_tap tap; } view;
 
-static texel texel_of(const view *t) { return texture_sample_level(t->texture, t->uv.x, t->uv.y, t->level); }
-static float channel_of(const view *t) { return texture_channel_level(t->texture, t->uv.x, t->uv.y, t->level); }
+static texel texel_of(const view *t) { return texture_read(t->texture, &t->tap); }
+static float channel_of(const view *t) { return texture_read_channel(t->texture, &t->tap); }
 
 static void tint(const view *t, float *r, float *g, float *b) {
     texel c = texel_of(t);
@@ -111,50 +111,64 @@ static void bend(const view *t, float scale, float *x, float *y, float *z) {
     *x = n.x, *y = n.y, *z = n.z;
 }
 
-static void apply_texture(const world *w, const path_hit *h, path_scratch *x, uint32_t i, material_slot slot,
-                          const world_texture *texture) {
-    const world_material *m = &w->materials[x->material[i]];
-    uint32_t set = texture->uv_set;
+/* Finds what the lane will read, and tells the caches. */
+static void look(const world *w, const path_hit *h, const path_scratch *x, uint32_t i, material_slot slot, view *t) {
+    uint32_t handle = w->materials[x->material[i]].texture[slot];
+    t->texture = handle ? &w->textures[handle - 1] : NULL;
+    if (!handle) return;
+    uint32_t set = t->texture->uv_set;
     vec2 at = {h->u[i], h->v[i]}, uv = set ? lookup_uv(w, h->triangle[i], set, at) : (vec2){x->tu[i], x->tv[i]};
-    view t = {texture, uv, texture->levels ? texture_level(texture, footprint(w, h, x, i, set)) : 0};
+    int32_t level = t->texture->levels ? texture_level(t->texture, footprint(w, h, x, i, set)) : 0;
+    t->tap = texture_find(t->texture, uv.x, uv.y, level);
+    texture_prefetch(&t->tap);
+}
+
+static void apply_texture(const world *w, const path_hit *h, path_scratch *x, uint32_t i, material_slot slot,
+                          const view *t) {
+    const world_material *m = &w->materials[x->material[i]];
     switch (slot) {
-    case SLOT_BASE: tint(&t, &x->base_r[i], &x->base_g[i], &x->base_b[i]); break;
-    case SLOT_EMISSION: tint(&t, &x->emit_r[i], &x->emit_g[i], &x->emit_b[i]); break;
-    case SLOT_SPECULAR_COLOR: tint(&t, &x->tint_r[i], &x->tint_g[i], &x->tint_b[i]); break;
-    case SLOT_SHEEN_COLOR: tint(&t, &x->sheen_r[i], &x->sheen_g[i], &x->sheen_b[i]); break;
-    case SLOT_DIFFUSE_TRANSMISSION_COLOR: tint(&t, &x->pass_r[i], &x->pass_g[i], &x->pass_b[i]); break;
-    case SLOT_METALLIC: x->metallic[i] *= channel_of(&t); break;
+    case SLOT_BASE: tint(t, &x->base_r[i], &x->base_g[i], &x->base_b[i]); break;
+    case SLOT_EMISSION: tint(t, &x->emit_r[i], &x->emit_g[i], &x->emit_b[i]); break;
+    case SLOT_SPECULAR_COLOR: tint(t, &x->tint_r[i], &x->tint_g[i], &x->tint_b[i]); break;
+    case SLOT_SHEEN_COLOR: tint(t, &x->sheen_r[i], &x->sheen_g[i], &x->sheen_b[i]); break;
+    case SLOT_DIFFUSE_TRANSMISSION_COLOR: tint(t, &x->pass_r[i], &x->pass_g[i], &x->pass_b[i]); break;
+    case SLOT_METALLIC: x->metallic[i] *= channel_of(t); break;
     case SLOT_ROUGHNESS:
-        x->roughness[i] *= channel_of(&t);
+        x->roughness[i] *= channel_of(t);
         if (m->flags & MATERIAL_GLOSSINESS) x->roughness[i] = 1.0f - x->roughness[i];
         break;
-    case SLOT_SPECULAR: x->specular[i] *= channel_of(&t); break;
-    case SLOT_TRANSMISSION: x->transmission[i] *= channel_of(&t); break;
-    case SLOT_CLEARCOAT: x->clearcoat[i] *= channel_of(&t); break;
-    case SLOT_CLEARCOAT_ROUGHNESS: x->clearcoat_roughness[i] *= channel_of(&t); break;
-    case SLOT_SHEEN_ROUGHNESS: x->sheen_roughness[i] *= channel_of(&t); break;
-    case SLOT_FILM: x->film[i] *= channel_of(&t); break;
+    case SLOT_SPECULAR: x->specular[i] *= channel_of(t); break;
+    case SLOT_TRANSMISSION: x->transmission[i] *= channel_of(t); break;
+    case SLOT_CLEARCOAT: x->clearcoat[i] *= channel_of(t); break;
+    case SLOT_CLEARCOAT_ROUGHNESS: x->clearcoat_roughness[i] *= channel_of(t); break;
+    case SLOT_SHEEN_ROUGHNESS: x->sheen_roughness[i] *= channel_of(t); break;
+    case SLOT_FILM: x->film[i] *= channel_of(t); break;
     case SLOT_FILM_THICKNESS:
-        x->film_thickness[i] = fm_lerp(m->film_thickness[0], m->film_thickness[1], channel_of(&t));
+        x->film_thickness[i] = fm_lerp(m->film_thickness[0], m->film_thickness[1], channel_of(t));
         break;
-    case SLOT_DIFFUSE_TRANSMISSION: x->pass[i] *= channel_of(&t); break;
+    case SLOT_DIFFUSE_TRANSMISSION: x->pass[i] *= channel_of(t); break;
     case SLOT_NORMAL:
-        bend(&t, m->normal_scale, &x->map_x[i], &x->map_y[i], &x->map_z[i]);
+        bend(t, m->normal_scale, &x->map_x[i], &x->map_y[i], &x->map_z[i]);
         load_tangent(w, h, x, i);
         break;
     case SLOT_CLEARCOAT_NORMAL:
-        bend(&t, m->clearcoat_normal_scale, &x->coat_x[i], &x->coat_y[i], &x->coat_z[i]);
+        bend(t, m->clearcoat_normal_scale, &x->coat_x[i], &x->coat_y[i], &x->coat_z[i]);
         break;
-    case SLOT_ANISOTROPY: apply_anisotropy(m, x, i, texel_of(&t)); break;
+    case SLOT_ANISOTROPY: apply_anisotropy(m, x, i, texel_of(t)); break;
     case SLOT_OPACITY:
     case SLOT_COUNT: break;
     }
 }
 
+/* Lanes that are looked at before the first of them is read: their texels are on the way meanwhile. */
+enum { VIEWS = 16 };
+
 static void apply_slot(const world *w, const path_hit *h, path_scratch *x, uint32_t n, material_slot slot) {
-    for (uint32_t i = 0; i < n; i++) {
-        uint32_t handle = w->materials[x->material[i]].texture[slot];
-        if (handle) apply_texture(w, h, x, i, slot, &w->textures[handle - 1]);
+    view views[VIEWS];
+    for (uint32_t i = 0; i < n + VIEWS; i++) {
+        view *t = &views[i % VIEWS];
+        if (i >= VIEWS && t->texture) apply_texture(w, h, x, i - VIEWS, slot, t);
+        if (i < n) look(w, h, x, i, slot, t);
     }
 }
 

@@ -15,19 +15,38 @@ static int32_t edge(kiln_wrap mode, int32_t i, int32_t n) {
     return i < 0 ? 0 : i >= n ? n - 1 : i;
 }
 
+static size_t texel_bytes(kiln_pixel_format format) {
+    return format == KILN_PIXELS_U8 ? 4 : format == KILN_PIXELS_U16 ? 8 : 16;
+}
+static const void *texel_address(const texture_grid *t, int32_t x, int32_t y) {
+    size_t at = (size_t)y * (size_t)t->width + (size_t)x;
+    return (const unsigned char *)t->texels + texel_bytes(t->format) * at;
+}
+
 texel texture_load(const texture_grid *t, int32_t x, int32_t y) {
-    size_t at = 4 * ((size_t)y * (size_t)t->width + (size_t)x);
+    const void *at = texel_address(t, x, y);
     if (t->format == KILN_PIXELS_U8) {
-        const uint8_t *p = (const uint8_t *)t->texels + at;
+        const uint8_t *p = at;
         return (texel){t->curve[p[0]], t->curve[p[1]], t->curve[p[2]], (float)p[3] * (1.0f / 255.0f)};
     }
     if (t->format == KILN_PIXELS_U16) {
-        const uint16_t *p = (const uint16_t *)t->texels + at;
+        const uint16_t *p = at;
         const float s = 1.0f / 65535.0f;
         return (texel){(float)p[0] * s, (float)p[1] * s, (float)p[2] * s, (float)p[3] * s};
     }
-    const float *p = (const float *)t->texels + at;
+    const float *p = at;
     return (texel){p[0], p[1], p[2], p[3]};
+}
+
+/* One channel of it. */
+static float load_channel(const texture_grid *t, int32_t x, int32_t y, uint32_t channel) {
+    const void *at = texel_address(t, x, y);
+    if (t->format == KILN_PIXELS_U8) {
+        uint8_t value = ((const uint8_t *)at)[channel];
+        return channel < 3 ? t->curve[value] : (float)value * (1.0f / 255.0f);
+    }
+    if (t->format == KILN_PIXELS_U16) return (float)((const uint16_t *)at)[channel] * (1.0f / 65535.0f);
+    return ((const float *)at)[channel];
 }
 
 static texel mix(texel a, texel b, float t) {
@@ -56,34 +75,59 @@ int32_t texture_level(const world_texture *t, texture_footprint f) {
     return level < t->level_count ? level : t->level_count;
 }
 
-static texel filtered(const world_texture *t, float u, float v, int32_t level) {
+texture_tap texture_find(const world_texture *t, float u, float v, int32_t level) {
     const float *m = t->transform;
-    texture_grid g = grid_at(t, level);
-    float x = wrap(t->wrap_u, m[0] * u + m[1] * v + m[2]) * (float)g.width;
-    float y = wrap(t->wrap_v, m[3] * u + m[4] * v + m[5]) * (float)g.height;
+    texture_tap p = {.grid = grid_at(t, level)};
+    const texture_grid *g = &p.grid;
+    float x = wrap(t->wrap_u, m[0] * u + m[1] * v + m[2]) * (float)g->width;
+    float y = wrap(t->wrap_v, m[3] * u + m[4] * v + m[5]) * (float)g->height;
     if (t->nearest) {
         int32_t i = (int32_t)x, j = (int32_t)y;
-        return texture_load(&g, i < g.width ? i : g.width - 1, j < g.height ? j : g.height - 1);
+        p.i0 = p.i1 = i < g->width ? i : g->width - 1;
+        p.j0 = p.j1 = j < g->height ? j : g->height - 1;
+        return p;
     }
     /* Texel centres lie at halves. */
-    float xf = fm_floor(x - 0.5f), yf = fm_floor(y - 0.5f), fx = x - 0.5f - xf, fy = y - 0.5f - yf;
+    float xf = fm_floor(x - 0.5f), yf = fm_floor(y - 0.5f);
     int32_t i = (int32_t)xf, j = (int32_t)yf;
-    int32_t i0 = edge(t->wrap_u, i, g.width), i1 = edge(t->wrap_u, i + 1, g.width);
-    int32_t j0 = edge(t->wrap_v, j, g.height), j1 = edge(t->wrap_v, j + 1, g.height);
-    return mix(mix(texture_load(&g, i0, j0), texture_load(&g, i1, j0), fx),
-               mix(texture_load(&g, i0, j1), texture_load(&g, i1, j1), fx), fy);
+    p.fx = x - 0.5f - xf, p.fy = y - 0.5f - yf;
+    p.i0 = edge(t->wrap_u, i, g->width), p.i1 = edge(t->wrap_u, i + 1, g->width);
+    p.j0 = edge(t->wrap_v, j, g->height), p.j1 = edge(t->wrap_v, j + 1, g->height);
+    return p;
 }
 
-texel texture_sample_level(const world_texture *t, float u, float v, int32_t level) {
-    texel c = filtered(t, u, v, level);
+void texture_prefetch(const texture_tap *p) {
+    __builtin_prefetch(texel_address(&p->grid, p->i0, p->j0));
+    __builtin_prefetch(texel_address(&p->grid, p->i1, p->j1));
+}
+
+texel texture_read(const world_texture *t, const texture_tap *p) {
+    const texture_grid *g = &p->grid;
+    texel c = t->nearest ? texture_load(g, p->i0, p->j0)
+                         : mix(mix(texture_load(g, p->i0, p->j0), texture_load(g, p->i1, p->j0), p->fx),
+                               mix(texture_load(g, p->i0, p->j1), texture_load(g, p->i1, p->j1), p->fx), p->fy);
     if (!t->has_matrix) return c;
     vec3 rgb = v3_transform(t->matrix, v3(c.r, c.g, c.b));
     return (texel){rgb.x, rgb.y, rgb.z, c.a};
 }
 
+float texture_read_channel(const world_texture *t, const texture_tap *p) {
+    const texture_grid *g = &p->grid;
+    uint32_t k = t->channel;
+    float a = load_channel(g, p->i0, p->j0, k);
+    if (t->nearest) return a;
+    float b = load_channel(g, p->i1, p->j0, k), c = load_channel(g, p->i0, p->j1, k), d = load_channel(g, p->i1, p->j1, k);
+    float top = a + p->fx * (b - a), bottom = c + p->fx * (d - c);
+    return top + p->fy * (bottom - top);
+}
+
+texel texture_sample_level(const world_texture *t, float u, float v, int32_t level) {
+    texture_tap p = texture_find(t, u, v, level);
+    return texture_read(t, &p);
+}
 float texture_channel_level(const world_texture *t, float u, float v, int32_t level) {
-    texel c = filtered(t, u, v, level);
-    return t->channel == 0 ? c.r : t->channel == 1 ? c.g : t->channel == 2 ? c.b : c.a;
+    texture_tap p = texture_find(t, u, v, level);
+    return texture_read_channel(t, &p);
 }
 
 texel texture_sample(const world_texture *t, float u, float v) { return texture_sample_level(t, u, v, 0); }

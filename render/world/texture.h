@@ -63,7 +63,19 @@ texel texture_sample(const world_texture *, float u, float v);
 /* One channel of it. */
 float texture_channel(const world_texture *, float u, float v);
 
-/* The same on a level. */
+/* The same in two steps, so that the caches can be told of the first while others are looked up. What a look-up reads:
+ * four texels of a level, and their weights. */
+typedef struct texture_tap {
+    texture_grid grid;
+    int32_t i0, i1, j0, j1; /* columns, rows */
+    float fx, fy;           /* of i1, of j1 */
+} texture_tap;
+texture_tap texture_find(const world_texture *, float u, float v, int32_t level);
+void texture_prefetch(const texture_tap *);
+texel texture_read(const world_texture *, const texture_tap *);
+float texture_read_channel(const world_texture *, const texture_tap *);
+
+/* Both at once. */
 texel texture_sample_level(const world_texture *, float u, float v, int32_t level);
 float texture_channel_level(const world_texture *, float u, float v, int32_t level);
 
