@@ -106,10 +106,14 @@ static bool must_stop(pass *p, uint32_t thread) {
 
 static void trace(pass *p, uint32_t thread, uint32_t count) {
     pass_worker *w = &p->workers[thread];
-    stage_clock_start(&w->batch->clock);
-    p->tracer(p->context, w->samples, count, w->batch);
+    batch *b = w->batch;
+    ray_tape *tape = p->tapes ? tape_begin(&p->tapes[thread]) : NULL;
+    b->camera_rays.tape = b->bounce_rays.tape = b->shadow_rays.tape = tape;
+    stage_clock_start(&b->clock);
+    p->tracer(p->context, w->samples, count, b);
+    if (tape) tape_end(tape, count);
     store(p, w, count);
-    stage_clock_read(&w->batch->clock, KILN_STAGE_FILM);
+    stage_clock_read(&b->clock, KILN_STAGE_FILM);
 }
 
 /* Even bits of a Morton number: neighbours in it are neighbours in the tile. */

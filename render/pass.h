@@ -26,6 +26,7 @@ typedef struct pass {
     uint64_t shuffle;  /* not 0: another order of tiles */
     uint32_t threads;
     pass_worker *workers;
+    ray_tape *tapes;   /* one a thread, that keep rays; NULL: nobody wants them */
 
     uint64_t ticks;    /* of passes so far, in clock_ticks and in seconds */
     double seconds;

@@ -8,6 +8,7 @@
 #include "base/threads.h"
 #include "render/context.h"
 #include "render/pass.h"
+#include "render/record.h"
 #include "scene/transfer.h"
 
 bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *options, kiln_renderer **renderer,
@@ -175,7 +176,7 @@ static bool prepare(const kiln_renderer *renderer, const kiln_render_options *o,
 }
 
 static bool render(const kiln_renderer *renderer, const kiln_render_options *o, const path_context *context,
-                   kiln_film *film, kiln_render_stats *stats, kiln_report *report) {
+                   kiln_film *film, ray_tape *tapes, kiln_render_stats *stats, kiln_report *report) {
     run r = {.options = o, .film = film, .started = clock_seconds(), .error = -1,
              .scale = o->error_scale > 0 ? o->error_scale : 1};
     bool any_rule = o->spp || o->noise > 0 || o->budget_seconds > 0;
@@ -183,7 +184,8 @@ static bool render(const kiln_renderer *renderer, const kiln_render_options *o, 
     r.spp = r.spp_before = kiln_film_spp(film);
     r.samples_before = kiln_film_samples(film);
     r.pass = (pass){.context = context, .film = film, .threads = renderer->threads, .cancel = o->cancel, .tick = tick,
-                    .tick_user = &r, .shuffle = o->tile_shuffle,
+                    .tick_user = &r,
+                    .tapes = tapes, .shuffle = o->tile_shuffle,
                     .batch_size = o->batch_size && o->batch_size < BATCH_PATHS ? o->batch_size : BATCH_PATHS,
                     .deadline = o->budget_seconds > 0 ? r.started + o->budget_seconds : 0};
     r.pass.tracer = path_choose_tracer(o->isa, NULL);
@@ -200,13 +202,28 @@ static bool render(const kiln_renderer *renderer, const kiln_render_options *o, 
     return done;
 }
 
-bool kiln_render(const kiln_renderer *renderer, const kiln_render_options *options, kiln_film *film,
-                 kiln_render_stats *stats, kiln_report *report) {
+bool render_recorded(const kiln_renderer *renderer, const kiln_render_options *options, kiln_film *film,
+                     ray_tape *tapes, kiln_render_stats *stats, kiln_report *report) {
     const kiln_render_options *o = options ? options : &no_options;
     path_context context;
     path_parts_plan parts;
     bool done = prepare(renderer, o, film, &context, &parts, report) &&
-                render(renderer, o, &context, film, stats, report);
+                render(renderer, o, &context, film, tapes, stats, report);
     context_free_parts(&parts);
     return done;
+}
+
+bool kiln_render(const kiln_renderer *renderer, const kiln_render_options *options, kiln_film *film,
+                 kiln_render_stats *stats, kiln_report *report) {
+    return render_recorded(renderer, options, film, NULL, stats, report);
+}
+
+uint32_t renderer_threads(const kiln_renderer *r) { return r->threads; }
+
+double renderer_replay(const kiln_renderer *r, const ray_tape *tapes) {
+    return tapes_replay(r->world, tapes, r->threads, r->threads);
+}
+
+uint64_t renderer_compare(const kiln_renderer *r, const ray_tape *tapes) {
+    return tapes_compare(r->world, tapes, r->threads, r->threads);
 }

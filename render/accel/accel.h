@@ -5,6 +5,7 @@
 #ifndef KILN_RENDER_ACCEL_ACCEL_H
 #define KILN_RENDER_ACCEL_ACCEL_H
 
+#include "render/accel/tape.h"
 #include "render/sample/sampler.h"
 #include "render/world/world.h"
 
@@ -39,7 +40,10 @@ typedef struct ray_lanes {
     uint32_t count;
 } ray_lanes;
 
-typedef struct trace_counts { uint64_t rays, refused; } trace_counts;
+typedef struct trace_counts {
+    uint64_t rays, refused;
+    ray_tape *tape; /* that keeps the rays; NULL: none */
+} trace_counts;
 
 /* The stages call instances of these that are compiled as they are; everyone else the plain ones. */
 #ifdef KILN_ISA

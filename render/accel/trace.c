@@ -110,6 +110,12 @@ static void name_baked(const world *w, const struct RTCHit16 *h, const packet *p
     }
 }
 
+/* For a render that is recorded; NULL: this packet is not. */
+static tape_packet *keep(const trace_counts *counts, tape_query query, const struct RTCRay16 *r, const packet *p,
+                         const ray_coverage *coverage) {
+    return counts->tape ? tape_add(counts->tape, query, r, p->valid, coverage) : NULL;
+}
+
 void accel_closest(const world *w, const ray_lanes *rays, float *t, float *u, float *v, uint32_t *triangle,
                    uint32_t *instance, trace_counts *counts) {
     coverage_context context = {.world = w, .coverage = &rays->coverage};
@@ -123,7 +129,9 @@ void accel_closest(const world *w, const ray_lanes *rays, float *t, float *u, fl
             r.hit.primID[k] = 0;
             r.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
         }
+        tape_packet *kept = keep(counts, TAPE_CLOSEST, &r.ray, &p, &rays->coverage);
         embree_intersect16(p.valid, w->accel->scene, &context.embree, &r);
+        if (kept) tape_met(kept, &r.ray);
         if (p.in_order && w->instance_count == 1) {
             memcpy(t + first, r.ray.tfar, sizeof r.ray.tfar);
             memcpy(u + first, r.hit.u, sizeof r.hit.u);
@@ -146,7 +154,9 @@ void accel_visible(const world *w, const ray_lanes *rays, uint32_t *visible, tra
         struct RTCRay16 r;
         packet p;
         load(rays, first, &r, &p, counts);
+        tape_packet *kept = keep(counts, TAPE_VISIBLE, &r, &p, &rays->coverage);
         embree_occluded16(p.valid, w->accel->scene, &context.embree, &r);
+        if (kept) tape_met(kept, &r);
         for (uint32_t k = 0; k < p.count; k++) /* Embree sets tfar to −∞ where something is hit */
             visible[p.index[k]] = !p.valid[k] ? RAY_REFUSED : r.tfar[k] >= 0.0f ? RAY_REACHES : RAY_STOPPED;
     }
@@ -181,6 +191,7 @@ void accel_visit(const world *w, const ray_lanes *rays, ray_visitor *visitor, vo
         struct RTCRay16 r;
         packet p;
         load(rays, first, &r, &p, counts);
+        (void)keep(counts, TAPE_VISIT, &r, &p, &rays->coverage);
         embree_visit16(p.valid, w->accel->scene, &context.coverage.embree, visit_filter, &r);
     }
 }

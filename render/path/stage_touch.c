@@ -39,7 +39,7 @@ void STAGE(touch)(const path_context *c, batch *b) {
     ray_coverage coverage = {s->seed, s->index, sample_key(SAMPLE_COVERAGE, b->depth), c->independent};
     ray_lanes rays = {s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, x->tnear, x->tfar, coverage, x->list, count};
     visit v = {w, s, x->touches};
-    trace_counts uncounted = {0}; /* a part of the trace before */
+    trace_counts uncounted = {.tape = b->bounce_rays.tape}; /* a part of the trace before */
     accel_visit(w, &rays, add, &v, &uncounted);
     for (uint32_t k = 0; k < count; k++) {
         uint32_t i = x->list[k];
