@@ -24,14 +24,14 @@ typedef struct cli_args {
 
 typedef struct cli_command {
     const char *name, *argument, *summary;
-    bool renders;      /* takes all options of a job */
-    unsigned takes;    /* or those that have one of these bits in option_row.also */
+    bool renders;      /* takes all options of a job, but those that have one of the bits below in option_row.except */
+    unsigned takes;    /* takes those that have one of these bits in option_row.also */
     const char *talk; /* names of talk options that it takes, between spaces */
     const char *examples;
     int (*run)(const struct cli_command *, cli_args *, kiln_report *); /* the exit code */
 } cli_command;
 
-extern const cli_command cli_render, cli_inspect, cli_info, cli_help, cli_version;
+extern const cli_command cli_render, cli_inspect, cli_bench, cli_info, cli_help, cli_version;
 extern const cli_command *const cli_commands[]; /* NULL at the end */
 
 enum { EXIT_USAGE = 2 };

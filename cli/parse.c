@@ -16,7 +16,7 @@ typedef struct parser {
 } parser;
 
 bool cli_takes_job(const cli_command *c, const option_row *row) {
-    return c->renders || row->also & c->takes;
+    return row->also & c->takes || (c->renders && !(row->except & c->takes));
 }
 
 bool cli_takes_talk(const cli_command *c, const option_row *row) {

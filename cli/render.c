@@ -8,6 +8,7 @@
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
 #include "cli/log.h"
+#include "job/options.h"
 
 typedef struct listener {
     const cli_args *args;
@@ -144,6 +145,7 @@ const cli_command cli_render = {
     .argument = "SCENE",
     .summary = "one picture of a .gltf or .glb file; '-' reads a glb from stdin",
     .renders = true,
+    .takes = JOB_RENDER,
     .talk = " json quiet verbose progress help ",
     .examples = "  kiln render helmet.glb                                  helmet.png, framed and lit\n"
                 "  kiln render helmet.glb --env hall.hdr -o a.png -o a.exr lit by a picture, two files\n"

@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "job/bench.h"
 #include "job/info.h"
 #include "job/inspect.h"
 #include "job/run.h"
@@ -122,6 +123,24 @@ static char *dump(const json_t *json) {
 
 char *kiln_job_stats(const kiln_job *job) { return dump(job->stats); }
 
+/* Takes the JSON over. */
+static char *hand_out(json_t *json, const char *doing, kiln_report *report) {
+    put(json, "errors", stats_messages(report, KILN_ERROR));
+    put_count(json, "exit_code", (uint64_t)kiln_report_exit_code(report));
+    char *text = dump(json);
+    json_decref(json);
+    if (!text) report_no_memory(report, doing);
+    return text;
+}
+
+char *kiln_job_bench(kiln_job *job, const char *path, kiln_report *report) {
+    forget(job);
+    json_t *json = NULL;
+    if (run_start(&job->run, &job->options, &job->events, path ? path : "generated", report))
+        bench(&job->run, path, &json);
+    return hand_out(json ? json : json_object(), "measuring", report);
+}
+
 static json_t *inspect_failure(const char *path, const kiln_report *report) {
     json_t *o = json_object(), *source = json_object();
     put_text(source, "file", path);
@@ -135,12 +154,7 @@ char *kiln_job_inspect(kiln_job *job, const char *path, kiln_report *report) {
     json_t *json = NULL;
     bool done = run_start(&job->run, &job->options, &job->events, path, report) && inspect(&job->run, &json);
     if (!done) json = inspect_failure(path, report);
-    put(json, "errors", stats_messages(report, KILN_ERROR));
-    put_count(json, "exit_code", (uint64_t)kiln_report_exit_code(report));
-    char *text = dump(json);
-    json_decref(json);
-    if (!text) report_no_memory(report, "inspecting");
-    return text;
+    return hand_out(json, "inspecting", report);
 }
 
 char *kiln_job_info(kiln_job *job, kiln_report *report) {

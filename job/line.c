@@ -69,7 +69,7 @@ bool run_build(job_run *r) {
     return true;
 }
 
-static kiln_render_options render_options(const job_run *r) {
+kiln_render_options run_render_options(const job_run *r) {
     const job_options *o = r->options;
     return (kiln_render_options){.camera = &r->view.camera,
                                  .spp = r->rules.spp,
@@ -94,7 +94,7 @@ static kiln_render_options render_options(const job_run *r) {
 
 bool run_try_emitters(job_run *r) {
     bool lit;
-    kiln_render_options options = render_options(r);
+    kiln_render_options options = run_render_options(r);
     if (!run_build(r) ||
         !exposure_is_lit(r->renderer, &options, r->view.width, r->view.height, &lit, r->report))
         return false;
@@ -117,7 +117,7 @@ static bool needs_exposure(const job_run *r) {
 
 bool run_expose(job_run *r) {
     if (!needs_exposure(r)) return true;
-    kiln_render_options options = render_options(r);
+    kiln_render_options options = run_render_options(r);
     if (!exposure_choose(r->renderer, &options, r->view.width, r->view.height, &r->exposure, r->report)) return false;
     r->exposure_chosen = true;
     kiln_view *again;
@@ -157,7 +157,7 @@ static void warn_of_holes(const job_run *r) {
 }
 
 bool run_render(job_run *r) {
-    kiln_render_options options = render_options(r);
+    kiln_render_options options = run_render_options(r);
     r->rendered = true;
     if (!kiln_render(r->renderer, &options, r->film, &r->stats, r->report)) return false;
     r->error = kiln_film_estimate_error(r->film, exp2(r->exposure));

@@ -1,6 +1,9 @@
 #include "job/machine.h"
 
 #include <jansson.h>
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -19,6 +22,16 @@ uint64_t machine_memory(void) {
 uint64_t machine_peak_memory(void) {
     struct rusage usage;
     return getrusage(RUSAGE_SELF, &usage) == 0 ? (uint64_t)usage.ru_maxrss * 1024 : 0;
+}
+
+void machine_forget_peak(void) {
+#if defined(__GLIBC__)
+    malloc_trim(0); /* what was freed is not resident any more */
+#endif
+    FILE *file = fopen("/proc/self/clear_refs", "we");
+    if (!file) return;
+    (void)fwrite("5", 1, 1, file);
+    fclose(file);
 }
 
 void machine_cpu_model(kiln_text *out) {

@@ -8,6 +8,7 @@
 
 uint64_t machine_memory(void);    /* bytes of the machine; 0: unknown */
 uint64_t machine_peak_memory(void); /* resident bytes of this process, at most so far */
+void machine_forget_peak(void);     /* starts anew, where the system can (Linux) */
 
 void machine_cpu_model(kiln_text *);    /* "AMD EPYC 9554"; "" when unknown */
 void machine_cpu_features(kiln_text *); /* "sse4.2 avx avx2 fma": those that matter to kiln */

@@ -36,7 +36,8 @@ struct option_row {
     const option_choice *choices; /* of option_choices; ends with a NULL name */
     double low, high;     /* of numbers and counts */
     size_t offset;        /* of the field */
-    unsigned also;        /* bits of those who take the option beside the command that the table is for */
+    unsigned also;        /* bits of those who take the option beside the commands that the table is for */
+    unsigned except;      /* bits of those commands that do not take it all the same */
 };
 
 typedef struct option_table {

@@ -62,10 +62,12 @@ typedef struct job_options {
     bool allow_outside;
     const char *embree_config, *stats;
     bool strict;
+    bool embree;        /* of kiln bench: replay the rays by Embree alone */
+    const char *growth; /* of kiln bench: what varies; NULL: nothing */
 } job_options;
 
-/* What option_row.also means here. */
-enum { JOB_INSPECT = 1, JOB_INFO = 2 };
+/* What option_row.also and .except mean here. */
+enum { JOB_INSPECT = 1, JOB_INFO = 2, JOB_BENCH = 4, JOB_RENDER = 8 };
 
 extern const option_table job_option_table;
 

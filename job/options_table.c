@@ -18,7 +18,8 @@ static const option_choice schemes[] = {{"auto", KILN_SCHEME_AUTO},
                                         {NULL, 0}};
 
 static const char picture[] = "Picture", quality[] = "When it ends", estimator[] = "Estimator", camera[] = "Camera",
-                  light[] = "Light", surface[] = "Surfaces", color[] = "Colour", machine[] = "Machine";
+                  light[] = "Light", surface[] = "Surfaces", color[] = "Colour", machine[] = "Machine",
+                  measure[] = "Measure";
 
 /* In the order of kiln/film.h. */
 #define AOV_NAMES                                                                                                      \
@@ -30,7 +31,7 @@ static const option_row rows[] = {
     {"output", 'o', "FILE", picture,
      "by suffix: .exr scene-linear with AOVs and metadata, .hdr scene-linear, .png .jpg .webp .tif as displayed; "
      "'-' is a PNG on stdout; repeatable; {name} {camera} {frame:4} {variant} and #### are filled in",
-     NULL, "{name}.png", "a file name", &option_texts, FIELD(outputs)},
+     NULL, "{name}.png", "a file name", &option_texts, FIELD(outputs), .except = JOB_BENCH},
     {"size", 0, "WxH", picture, "pixels", NULL, "1024x1024, or 1024 and the aspect of the scene's camera",
      "a size WxH of 1 to 65536 pixels a side", &option_size, FIELD(size), .also = JOB_INSPECT},
     {"crop", 0, "X0,Y0,X1,Y1", picture, "renders that part alone; pixels, right and bottom exclusive", NULL, NULL,
@@ -41,14 +42,15 @@ static const option_row rows[] = {
      NULL, NULL, "a list such as albedo,lobe:*,lightgroup:key of " AOV_NAMES, &option_layers, FIELD(layers),
      .also = JOB_INSPECT},
 
-    {"spp", 0, "N", quality, "samples per pixel; the same bits for any number of threads", NULL, "1024 with --noise 3%",
-     "a whole number from 1 to 16777216", &option_count, .low = 1, .high = 16777216, FIELD(spp)},
+    {"spp", 0, "N", quality, "samples per pixel; the same bits for any number of threads", NULL,
+     "1024 with --noise 3%; bench: 16", "a whole number from 1 to 16777216", &option_count, .low = 1, .high = 16777216, FIELD(spp)},
     {"noise", 0, "P%", quality,
      "ends when the root of the estimated relative mean square error, of the pixels that show a surface, is below P; "
      "0: off. Giving any of these rules replaces the default; the first that is reached ends the render",
-     NULL, "3% with --spp 1024", "a percentage from 0 to 100, such as 1.5%", &option_percent, FIELD(noise_percent)},
+     NULL, "3% with --spp 1024", "a percentage from 0 to 100, such as 1.5%", &option_percent, FIELD(noise_percent),
+     .except = JOB_BENCH},
     {"budget", 0, "DURATION", quality, "ends after this time of rendering: 90, 90s, 500ms, 1.5m, 1h30m", NULL, NULL,
-     "a time above 0 such as 90s or 1h30m", &option_duration, FIELD(budget_seconds)},
+     "a time above 0 such as 90s or 1h30m", &option_duration, FIELD(budget_seconds), .except = JOB_BENCH},
 
     {"seed", 0, "N", estimator, "another seed gives another noise", "0", NULL, "a whole number from 0 to 2^64 - 1",
      &option_integer, FIELD(seed)},
@@ -108,13 +110,13 @@ static const option_row rows[] = {
 
     {"exposure", 0, "EV", color, "stops; doubles the light with each", NULL,
      "0; chosen where the file has punctual lights", "a number of stops from -64 to 64", &option_number, .low = -64,
-     .high = 64, FIELD(exposure)},
+     .high = 64, FIELD(exposure), .except = JOB_BENCH},
     {"display", 0, "NAME", color, "'kiln info' lists displays and views", NULL, "the config's, sRGB",
-     "the name of a display", &option_text, FIELD(display), .also = JOB_INFO},
+     "the name of a display", &option_text, FIELD(display), .also = JOB_INFO, .except = JOB_BENCH},
     {"view", 0, "NAME", color, "how scene-linear becomes a picture", NULL, "the config's, Khronos PBR Neutral",
-     "the name of a view", &option_text, FIELD(view), .also = JOB_INFO},
+     "the name of a view", &option_text, FIELD(view), .also = JOB_INFO, .except = JOB_BENCH},
     {"look", 0, "NAME", color, "OpenColorIO looks in place of the view's own", NULL, "the view's", "the name of a look",
-     &option_text, FIELD(look), .also = JOB_INFO},
+     &option_text, FIELD(look), .also = JOB_INFO, .except = JOB_BENCH},
     {"ocio", 0, "FILE", color, "OpenColorIO config", NULL, "$OCIO, else embedded", "the name of a file", &option_text,
      FIELD(ocio), .also = JOB_INFO},
     {"working-space", 0, "NAME", color, "scene-linear space that light is computed in", NULL, "lin_rec709",
@@ -129,9 +131,15 @@ static const option_row rows[] = {
     {"embree-config", 0, "STRING", machine, "passed to Embree's device, such as isa=avx2", NULL, NULL,
      "a list of Embree's settings such as isa=avx2,hugepages=1", &option_embree, FIELD(embree_config)},
     {"stats", 0, "FILE.json", machine, "writes everything that the run knows about itself", NULL, NULL, "a file name",
-     &option_text, FIELD(stats)},
+     &option_text, FIELD(stats), .except = JOB_BENCH},
     {"strict", 0, NULL, machine, "an import warning or a discarded sample is a failure", NULL, NULL, "true or false",
-     &option_toggle, FIELD(strict), .also = JOB_INSPECT},
+     &option_toggle, FIELD(strict), .also = JOB_INSPECT, .except = JOB_BENCH},
+
+    {"embree", 0, NULL, measure, "replays the rays of the render through Embree and nothing else", NULL, NULL,
+     "true or false", &option_toggle, FIELD(embree), .also = JOB_BENCH, .except = JOB_RENDER},
+    {"growth", 0, "LIST", measure,
+     "how time and memory grow with pixels, triangles, instances, depth, threads, or all; 'triangles:1e6' ends there",
+     NULL, NULL, "a list", &option_text, FIELD(growth), .also = JOB_BENCH, .except = JOB_RENDER},
 };
 
 const option_table job_option_table = {rows, sizeof rows / sizeof *rows};

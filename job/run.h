@@ -75,6 +75,8 @@ bool run_build(job_run *); /* unless run_try_emitters did */
 /* Looks by a quick render whether the emitters of a committed scene light what is seen; if not, puts up the studio. */
 bool run_try_emitters(job_run *);
 bool run_expose(job_run *);
+/* The run's options as a renderer wants them. */
+kiln_render_options run_render_options(const job_run *);
 bool run_render(job_run *);
 /* Writes every output, whatever happened to the others. */
 bool run_write(job_run *);

@@ -77,7 +77,7 @@ json_t *stats_messages(const kiln_report *report, kiln_severity severity) {
     return array;
 }
 
-static json_t *phases(const job_run *r) {
+json_t *stats_phases(const job_run *r) {
     json_t *array = json_array();
     for (uint32_t i = 0; i < r->phase_count; i++) {
         json_t *o = json_object();
@@ -187,7 +187,7 @@ static json_t *render_facts(const job_run *r) {
     return o;
 }
 
-static json_t *memory_facts(const job_run *r) {
+json_t *stats_memory(const job_run *r) {
     json_t *o = json_object();
     put_count(o, "peak", machine_peak_memory());
     put_count(o, "film", r->film ? kiln_film_bytes(r->film) : 0);
@@ -234,7 +234,7 @@ static json_t *output_facts(const job_run *r) {
     return array;
 }
 
-static json_t *option_facts(const job_options *o) {
+json_t *stats_options(const job_options *o) {
     json_t *object = json_object();
     for (size_t i = 0; i < job_option_table.count; i++) {
         const option_row *row = &job_option_table.rows[i];
@@ -255,16 +255,16 @@ json_t *stats_make(const job_run *r) {
     put_text(o, "command", command);
     free(command);
     put_text(o, "scene_file", r->source);
-    put(o, "options", option_facts(r->options));
+    put(o, "options", stats_options(r->options));
     put_number(o, "seconds", total);
-    put(o, "phases", phases(r));
+    put(o, "phases", stats_phases(r));
     if (r->scene && r->view.name) put(o, "scene", scene_facts(r));
     if (r->rendered) {
         put(o, "picture", picture_facts(r));
         put(o, "render", render_facts(r));
     }
     put(o, "outputs", output_facts(r));
-    put(o, "memory", memory_facts(r));
+    put(o, "memory", stats_memory(r));
     put(o, "machine", stats_machine(r->options->threads));
     put(o, "versions", stats_versions());
     put(o, "notes", stats_messages(r->report, KILN_NOTE));

@@ -12,6 +12,9 @@ json_t *stats_versions(void);
 json_t *stats_machine(uint32_t threads); /* 0: all */
 json_t *stats_camera(const job_view *);
 json_t *stats_bounds(kiln_bounds);
+json_t *stats_options(const job_options *); /* that were given */
+json_t *stats_phases(const job_run *);
+json_t *stats_memory(const job_run *);
 json_t *stats_stages(const kiln_render_stats *); /* those that took time */
 json_t *stats_messages(const kiln_report *, kiln_severity);
 

@@ -62,6 +62,12 @@ KILN_API char *kiln_job_stats(const kiln_job *);
  */
 KILN_API char *kiln_job_inspect(kiln_job *, const char *path, kiln_report *);
 
+/* What an asset costs, as JSON; free(): times of the phases up to the first sample, samples a second, time by stage,
+ * memory; with the option "embree" the replay of its rays by Embree alone, with "growth" how time and memory grow. path
+ * NULL: a generated scene. Nothing is written. Where an error was added it has no more than versions, warnings, errors and
+ * exit_code. NULL: out of memory. */
+KILN_API char *kiln_job_bench(kiln_job *, const char *path, kiln_report *);
+
 /* What the machine and the libraries offer, as JSON; free(). The job's options choose the colour config. */
 KILN_API char *kiln_job_info(kiln_job *, kiln_report *);
 

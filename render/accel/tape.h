@@ -2,7 +2,7 @@
  * and nothing else: what a renderer could do at most whose other work took no time.
  *
  * Whole batches are kept, one in `every`, so that camera, bounce and shadow rays are there in the proportion of the
- * render; about 50 bytes a ray. A render that is not recorded pays a branch for each packet. */
+ * render; 64 bytes a ray. A render that is not recorded pays a branch for each packet. */
 #ifndef KILN_RENDER_ACCEL_TAPE_H
 #define KILN_RENDER_ACCEL_TAPE_H
 

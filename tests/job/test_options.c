@@ -82,6 +82,8 @@ static const struct { const char *name, *given, *printed;
     {"stats", "s.json", NULL},
     {"strict", "true", NULL},
     {"strict", "false", NULL},
+    {"embree", "true", NULL},
+    {"growth", "pixels,triangles:1e6", NULL},
 };
 
 static void print_value(const fixture *f, const char *name, kiln_text *out) {
