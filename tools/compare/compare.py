@@ -5,7 +5,6 @@ import argparse
 import json
 import os
 import pathlib
-import shutil
 import subprocess
 import sys
 import time
@@ -18,6 +17,9 @@ import page
 import scene
 
 HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parent))
+import peers
+
 # Cycles takes most of a second to begin a picture, so it is spared the white world.
 SETTINGS = {"size": scene.SIZE, "half": scene.HALF, "spp": 64, "peers_spp": 32, "cycles_sees": "boxes", "seeds": 4,
     "depth": 64}
@@ -44,10 +46,10 @@ def render_kiln(kiln, folder, job):
     scene.write_gltf(folder / "case.gltf", job["gltf"])
     for seed in range(SETTINGS["seeds"]):
         done = subprocess.run(
-            [kiln, "render", folder / "case.gltf", "-o", folder / "case.exr", "--size", f"{scene.SIZE}x{scene.SIZE}",
-             "--spp", str(SETTINGS["spp"]), "--noise", "0", "--seed", str(seed), "--filter", "box:1",
-             "--max-depth", str(SETTINGS["depth"]), "--subdivide", "off", "--env", folder / f"{job['environment']}.hdr",
-             "--working-space", "lin_rec709"], capture_output=True, text=True)
+            [kiln, "render", folder / "case.gltf", "-o", folder / "case.exr", *peers.KILN_OPTIONS,
+             "--size", f"{scene.SIZE}x{scene.SIZE}", "--spp", str(SETTINGS["spp"]), "--seed", str(seed),
+             "--max-depth", str(SETTINGS["depth"]), "--env", folder / f"{job['environment']}.hdr"],
+            capture_output=True, text=True)
         if done.returncode:
             sys.exit(f"compare: kiln on {job['id']}: {done.stderr}")
         warnings |= {line for line in done.stderr.splitlines() if "warning" in line}
@@ -65,21 +67,13 @@ def run_kiln(kiln, folder, jobs):
         say(f"kiln: {job['id']} ({number + 1} of {len(jobs)})", *warnings)
 
 
-def has(python, module):
-    return python and subprocess.run([python, "-c", f"import {module}"], capture_output=True).returncode == 0
-
-
 def run_peers(arguments, folder):
-    if has(arguments.mitsuba, "mitsuba"):
-        subprocess.run([arguments.mitsuba, HERE / "with_mitsuba.py", folder], check=True)
+    if peers.has(arguments.mitsuba, "mitsuba"):
+        subprocess.run(peers.command(arguments.mitsuba, HERE / "with_mitsuba.py", folder), check=True)
     else:
         say("no Mitsuba: pip install mitsuba, and name that Python by --mitsuba or KILN_MITSUBA")
-    if has(arguments.cycles, "bpy"):
-        subprocess.run([arguments.cycles, HERE / "with_cycles.py", folder], check=True)
-    elif arguments.cycles and "blender" in pathlib.Path(arguments.cycles).name:
-        subprocess.run([arguments.cycles, "-b", "--python-exit-code", "1", "--python", HERE / "with_cycles.py", "--",
-            folder],
-                       check=True)
+    if arguments.cycles and (peers.is_blender(arguments.cycles) or peers.has(arguments.cycles, "bpy")):
+        subprocess.run(peers.command(arguments.cycles, HERE / "with_cycles.py", folder), check=True)
     else:
         say("no Cycles: pip install bpy in an environment of its own, or Blender; name that Python, or blender,",
             "by --cycles or KILN_CYCLES")
@@ -89,10 +83,11 @@ def parse():
     p = argparse.ArgumentParser(prog="script/compare-materials",
         description="Compares kiln's materials with other renderers'")
     p.add_argument("--kiln", default=HERE.parent.parent / "build/release/kiln", help="the program [build/release/kiln]")
-    p.add_argument("--mitsuba", default=os.environ.get("KILN_MITSUBA", sys.executable),
-                   help="a Python that has mitsuba [$KILN_MITSUBA, else this one]")
-    p.add_argument("--cycles", default=os.environ.get("KILN_CYCLES") or shutil.which("blender") or sys.executable,
-                   help="a Python that has bpy, or Blender [$KILN_CYCLES, else blender, else this Python]")
+    p.add_argument("--mitsuba", default=peers.find("mitsuba"),
+                   help="a Python that has mitsuba [$KILN_MITSUBA, else this one, else script/bench's]")
+    p.add_argument("--cycles", default=peers.find("cycles"),
+                   help="a Python that has bpy, or Blender [$KILN_CYCLES, else this one, else script/bench's, else "
+                        "blender]")
     p.add_argument("--folder", default=HERE.parent.parent / "out/compare", type=pathlib.Path,
                    help="where pictures are kept; what is there is not rendered again [out/compare]")
     p.add_argument("--only", default="", help="grids, by commas; the page is not written")

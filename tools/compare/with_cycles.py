@@ -8,6 +8,9 @@ import sys
 import bpy
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+import peers
+
 
 def build_node(tree, recipe):
     """A recipe is {"node": type, "inputs": {name: value or recipe}, "set": {property: value}}; gives the output
@@ -32,15 +35,8 @@ def set_up(folder, settings):
     scene.render.engine = "CYCLES"
     scene.render.resolution_x = scene.render.resolution_y = settings["size"]
     scene.render.resolution_percentage = 100
-    for name, value in {"device": "CPU", "samples": settings["peers_spp"], "use_adaptive_sampling": False,
-        "use_denoising": False,
-                        "sample_clamp_direct": 0, "sample_clamp_indirect": 0, "light_sampling_threshold": 0,
-                        "blur_glossy": 0, "pixel_filter_type": "BOX", "filter_width": 1.0,
-                        "transparent_max_bounces": settings["depth"], "caustics_reflective": True,
-                        "caustics_refractive": True}.items():
+    for name, value in {**peers.cycles_settings(settings["depth"]), "samples": settings["peers_spp"]}.items():
         setattr(scene.cycles, name, value)
-    for name in ("max", "diffuse", "glossy", "transmission", "volume"):
-        setattr(scene.cycles, f"{name}_bounces", settings["depth"])
     for name, value in {"file_format": "OPEN_EXR", "color_depth": "32", "color_mode": "RGB"}.items():
         setattr(scene.render.image_settings, name, value)
     scene.view_settings.view_transform = "Raw"
