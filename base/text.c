@@ -114,6 +114,11 @@ static size_t edit_distance(const char *a, const char *b) {
     return row[lb];
 }
 
+const char *text_after(const char *string, const char *prefix) {
+    size_t length = strlen(prefix);
+    return strncmp(string, prefix, length) == 0 ? string + length : NULL;
+}
+
 const char *text_nearest(const char *word, const char *const *candidates, size_t count) {
     const char *best = NULL;
     size_t length = strlen(word), best_distance = (length == 2 ? 1 : length / 3) + 1;

@@ -28,6 +28,9 @@ void text_free(kiln_text *);
 bool text_to_double(const char *string, double *value);
 bool text_to_uint64(const char *string, uint64_t *value);
 
+/* What follows the prefix; NULL: the string does not begin with it. */
+const char *text_after(const char *string, const char *prefix);
+
 /* The candidate nearest to word in edit distance, for "did you mean". NULL when none is within a third of the word's
  * length (of two letters, one may be wrong). */
 const char *text_nearest(const char *word, const char *const *candidates, size_t count);

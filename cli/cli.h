@@ -49,5 +49,6 @@ bool cli_print_help(const cli_command *, kiln_report *);
 
 /* Writes text to standard output; false: reported. */
 bool cli_print(const char *text, kiln_report *);
+bool cli_print_text(kiln_text *, kiln_report *); /* and frees it; it must not be empty */
 
 #endif

@@ -63,8 +63,8 @@ static void append_options(kiln_text *out, const cli_command *c) {
     }
 }
 
-static bool print(kiln_text *text, kiln_report *report) {
-    bool done = text->data ? cli_print(text->data, report) : report_no_memory(report, "printing help");
+bool cli_print_text(kiln_text *text, kiln_report *report) {
+    bool done = text->data ? cli_print(text->data, report) : report_no_memory(report, "printing");
     text_free(text);
     return done;
 }
@@ -75,7 +75,7 @@ bool cli_print_help(const cli_command *c, kiln_report *report) {
                 c->summary);
     append_options(&out, c);
     if (c->examples) text_format(&out, "\nExamples\n%s\n", c->examples);
-    return print(&out, report);
+    return cli_print_text(&out, report);
 }
 
 bool cli_print_overview(kiln_report *report) {
@@ -86,7 +86,7 @@ bool cli_print_overview(kiln_report *report) {
         text_format(&out, "  kiln %-8s %-8s %s\n", c->name, c->argument ? c->argument : "", c->summary);
     }
     text_append(&out, "\n'kiln COMMAND --help' explains the options. Try: kiln render helmet.glb\n");
-    return print(&out, report);
+    return cli_print_text(&out, report);
 }
 
 static int run_help(const cli_command *command, cli_args *args, kiln_report *report) {
@@ -106,7 +106,7 @@ static int run_version(const cli_command *command, cli_args *args, kiln_report *
     (void)command, (void)args;
     kiln_text out = {0};
     text_format(&out, "kiln %s\n", kiln_version());
-    print(&out, report);
+    cli_print_text(&out, report);
     return kiln_report_exit_code(report);
 }
 

@@ -67,8 +67,7 @@ static int run(const cli_command *command, cli_args *args, kiln_report *report) 
     else {
         kiln_text text = {0};
         print_info(json, &text);
-        cli_print(text.data ? text.data : "", report);
-        text_free(&text);
+        cli_print_text(&text, report);
     }
     free(json);
     return kiln_report_exit_code(report);

@@ -16,8 +16,7 @@ static int run(const cli_command *command, cli_args *args, kiln_report *report) 
     else if (json && !kiln_report_exit_code(report)) {
         kiln_text text = {0};
         inspect_text(json, args->talk.verbose, &text);
-        cli_print(text.data ? text.data : "", report);
-        text_free(&text);
+        cli_print_text(&text, report);
     }
     free(json);
     return kiln_report_exit_code(report);

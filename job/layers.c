@@ -20,11 +20,6 @@ static const char *const matte_layers[KILN_MATTE_COUNT] = {
     KILN_MATTES(MATTE_LAYER)
 #undef MATTE_LAYER
 };
-static const char *const lobe_names[KILN_LOBE_COUNT] = {
-#define LOBE_NAME(id, name, text) name,
-    KILN_LOBES(LOBE_NAME)
-#undef LOBE_NAME
-};
 
 /* Adds the bit of a name, or for "*" all. */
 static bool add_bit(const char *const *names, uint32_t count, const char *name, uint32_t *bits) {
@@ -50,14 +45,9 @@ static bool add_light(job_layers *l, char *name, kiln_arena *arena) {
 
 static const char light_prefix[] = "lightgroup:";
 
-static const char *after(const char *name, const char *prefix) {
-    size_t length = strlen(prefix);
-    return strncmp(name, prefix, length) == 0 ? name + length : NULL;
-}
-
 static bool add(job_layers *l, char *name, kiln_arena *arena) {
-    const char *lobe = after(name, "lobe:"), *light = after(name, light_prefix), *matte = after(name, "cryptomatte:");
-    if (lobe) return add_bit(lobe_names, KILN_LOBE_COUNT, lobe, &l->lobes);
+    const char *lobe = text_after(name, "lobe:"), *light = text_after(name, light_prefix), *matte = text_after(name, "cryptomatte:");
+    if (lobe) return add_bit(kiln_lobe_names(), KILN_LOBE_COUNT, lobe, &l->lobes);
     if (light) return add_light(l, name + strlen(light_prefix), arena);
     if (matte || strcmp(name, "cryptomatte") == 0)
         return add_bit(matte_names, KILN_MATTE_COUNT, matte ? matte : "*", &l->mattes);
@@ -102,7 +92,7 @@ static void print(const option_row *row, const void *field, kiln_text *out) {
     if (l->emission) print_name(out, start, "", "emission");
     if (l->direct) print_name(out, start, "", "direct");
     if (l->indirect) print_name(out, start, "", "indirect");
-    print_bits(out, start, "lobe:", lobe_names, KILN_LOBE_COUNT, l->lobes);
+    print_bits(out, start, "lobe:", kiln_lobe_names(), KILN_LOBE_COUNT, l->lobes);
     if (l->every_light) print_name(out, start, "lightgroup:", "*");
     for (uint32_t i = 0; i < l->lights.count; i++) print_name(out, start, "lightgroup:", l->lights.items[i]);
     print_bits(out, start, "cryptomatte:", matte_names, KILN_MATTE_COUNT, l->mattes);
@@ -164,7 +154,7 @@ static void add_parts(const job_layers *l, const char *const *groups, uint32_t g
     if (l->direct) add_part(p, "", "direct");
     if (l->indirect) add_part(p, "", "indirect");
     for (uint32_t i = 0; i < KILN_LOBE_COUNT; i++)
-        if (l->lobes >> i & 1) add_part(p, "lobe:", lobe_names[i]);
+        if (l->lobes >> i & 1) add_part(p, "lobe:", kiln_lobe_names()[i]);
     for (uint32_t i = 0; l->every_light && i < group_count; i++) add_part(p, "lightgroup:", groups[i]);
     for (uint32_t i = 0; !l->every_light && i < l->lights.count; i++) add_part(p, "lightgroup:", l->lights.items[i]);
 }
@@ -187,11 +177,13 @@ bool layers_parts(const job_layers *l, const kiln_scene *scene, const char *cons
 }
 
 void layers_name_part(const kiln_film_part_info *part, kiln_text *out) {
-    const char *light = after(part->name, "lightgroup:"), *lobe = after(part->name, "lobe:");
+    const char *light = text_after(part->name, "lightgroup:"), *lobe = text_after(part->name, "lobe:");
     if (part->rest) text_format(out, "rest_%.*s", (int)strcspn(part->name, ":"), part->name);
     else if (light) text_format(out, "lightgroup_%s", light);
     else text_append(out, lobe ? lobe : part->name);
 }
+
+const char *layers_name_matte(kiln_matte matte) { return matte_layers[matte]; }
 
 static void list(kiln_text *out, const char *name) { text_append_bytes(out, name, strlen(name) + 1); }
 

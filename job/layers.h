@@ -25,6 +25,9 @@ bool layers_parts(const job_layers *, const kiln_scene *, const char *const **pa
 /* What a layer of a file is called; the channels follow a point. */
 void layers_name_part(const kiln_film_part_info *, kiln_text *);
 
+/* What the layers of a matte are called, but for their number. */
+const char *layers_name_matte(kiln_matte);
+
 /* Of all that was asked for: each ends with a 0, and the last is followed by another. */
 void layers_list(const job_layers *, const kiln_film *, kiln_text *);
 

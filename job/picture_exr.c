@@ -146,24 +146,20 @@ static void add_metadata(assembly *a, const char *layer, const char *what, const
 /* Two ranks a layer: id and share in R and G, the next in B and A. */
 static void add_matte(assembly *a, kiln_matte matte) {
     static const char *const channels[] = {"R", "G", "B", "A"};
-    static const char *const names[KILN_MATTE_COUNT] = {
-#define MATTE_LAYER(id, name, layer, text) layer,
-        KILN_MATTES(MATTE_LAYER)
-#undef MATTE_LAYER
-    };
+    const char *name = layers_name_matte(matte);
     float *values = values_of(a, 2 * KILN_MATTE_RANKS);
     if (!values) return;
     kiln_film_matte(a->picture->film, matte, values);
     for (size_t i = 0; i < 2 * KILN_MATTE_RANKS; i++) {
         char layer[32];
-        snprintf(layer, sizeof layer, "%s%02zu", names[matte], i / 4);
+        snprintf(layer, sizeof layer, "%s%02zu", name, i / 4);
         add(a, layer, channels[i % 4], values + i, 2 * KILN_MATTE_RANKS, true);
     }
     char *manifest = manifest_of(a->picture->film, matte);
-    add_metadata(a, names[matte], "name", names[matte]);
-    add_metadata(a, names[matte], "hash", "MurmurHash3_32");
-    add_metadata(a, names[matte], "conversion", "uint32_to_float32");
-    add_metadata(a, names[matte], "manifest", manifest);
+    add_metadata(a, name, "name", name);
+    add_metadata(a, name, "hash", "MurmurHash3_32");
+    add_metadata(a, name, "conversion", "uint32_to_float32");
+    add_metadata(a, name, "manifest", manifest);
     free(manifest);
 }
 

@@ -1,29 +1,19 @@
 /* The names of the scene's things, as mattes call them. */
-#include <stdio.h>
-
 #include "render/context.h"
 #include "scene/scene.h"
-
-/* "object 7" for what has no name. */
-static const char *name_or_handle(kiln_arena *arena, const char *name, const char *what, uint32_t handle) {
-    char text[32];
-    if (name && *name) return name;
-    snprintf(text, sizeof text, "%s %u", what, handle);
-    return arena_string(arena, text);
-}
 
 static const char *name_of(const kiln_scene *s, kiln_arena *arena, kiln_matte matte, uint32_t handle) {
     const kiln_instance *instance = handle && matte != KILN_MATTE_MATERIAL ? scene_instance(s, handle) : NULL;
     switch (matte) {
     case KILN_MATTE_MATERIAL:
-        return handle ? name_or_handle(arena, scene_material(s, handle)->name, "material", handle) : "default";
+        return handle ? scene_name(arena, scene_material(s, handle)->name, "material ", handle) : "default";
     case KILN_MATTE_ASSET:
         if (instance && *instance->asset) return instance->asset;
         break;
     case KILN_MATTE_OBJECT:
     case KILN_MATTE_COUNT: break;
     }
-    return instance ? name_or_handle(arena, instance->name, "object", handle) : ""; /* no instance has handle 0 */
+    return instance ? scene_name(arena, instance->name, "object ", handle) : ""; /* no instance has handle 0 */
 }
 
 static bool name_all(const kiln_scene *s, kiln_film *film, kiln_matte matte, kiln_report *report) {

@@ -1,6 +1,5 @@
 #include "scene/groups.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,10 +26,9 @@ void light_group_clean(char *name) {
         if (*c == '.' || *c == ',' || *c == ':' || (unsigned char)*c < ' ' || *c == 0x7f) *c = '_';
 }
 
-static const char *name_or_handle(kiln_arena *arena, const char *name, const char *what, uint32_t handle) {
-    char numbered[32];
-    snprintf(numbered, sizeof numbered, "%s_%u", what, handle);
-    char *text = arena_string(arena, name && *name ? name : numbered);
+static const char *group_name(kiln_arena *arena, const char *name, const char *prefix, uint32_t handle) {
+    name = scene_name(arena, name, prefix, handle);
+    char *text = name ? arena_string(arena, name) : NULL;
     if (text) light_group_clean(text);
     return text;
 }
@@ -68,11 +66,11 @@ static bool gather(const kiln_scene *s, gathering *g, light_groups *groups, bool
     bool done = true;
     mark_worn(s, worn);
     for (uint32_t i = 1; done && i <= s->light_count; i++)
-        done = add(g, name_or_handle(&g->arena, scene_light(s, i)->name, "light", i), &groups->of_light[i]);
+        done = add(g, group_name(&g->arena, scene_light(s, i)->name, "light_", i), &groups->of_light[i]);
     for (uint32_t i = 1; done && i <= s->material_count; i++) {
         const kiln_material *m = scene_material(s, i);
         if (!worn[i] || !shines(m)) continue;
-        done = add(g, name_or_handle(&g->arena, m->name, "material", i), &groups->of_material[i]);
+        done = add(g, group_name(&g->arena, m->name, "material_", i), &groups->of_material[i]);
     }
     return done && add(g, "environment", &groups->of_environment);
 }

@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "scene/bounds.h"
@@ -88,4 +89,11 @@ bool kiln_scene_commit(kiln_scene *scene, kiln_report *report) {
     scene->where = NULL; /* the importer's chain does not outlive it */
     scene->committed = true;
     return true;
+}
+
+const char *scene_name(kiln_arena *arena, const char *name, const char *prefix, kiln_id handle) {
+    char text[32];
+    if (name && *name) return name;
+    snprintf(text, sizeof text, "%s%u", prefix, handle);
+    return arena_string(arena, text);
 }

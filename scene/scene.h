@@ -70,6 +70,10 @@ static inline const kiln_image_desc *scene_image(const kiln_scene *s, kiln_id id
 static inline const kiln_material *scene_material(const kiln_scene *s, kiln_id id) {
     return id ? &s->materials[id - 1] : &s->default_material;
 }
+/* The name, borrowed, or in the arena what stands for one that is NULL or "": the prefix and the handle. NULL: no
+ * memory. */
+const char *scene_name(kiln_arena *, const char *name, const char *prefix, kiln_id handle);
+
 /* What messages about an image of a scene begin with. */
 static inline const char *scene_image_place(const kiln_image_desc *image) {
     return *image->place ? image->place : *image->name ? image->name : "image";

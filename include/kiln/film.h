@@ -80,6 +80,9 @@ typedef enum kiln_lobe {
         KILN_LOBE_COUNT
 } kiln_lobe;
 
+/* KILN_LOBE_COUNT names, as they stand behind "lobe:". */
+KILN_API const char *const *kiln_lobe_names(void);
+
 typedef enum kiln_division {
     KILN_DIVISION_BOUNCE,
     KILN_DIVISION_LOBE,

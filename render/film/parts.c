@@ -11,15 +11,12 @@ static const char *const lobe_names[KILN_LOBE_COUNT] = {
     KILN_LOBES(LOBE_NAME)
 #undef LOBE_NAME
 };
+const char *const *kiln_lobe_names(void) { return lobe_names; }
+
 static const char *const bounce_names[PATH_BOUNCES] = {"emission", "direct", "indirect"};
 static const char lobe_prefix[] = "lobe:", light_prefix[] = "lightgroup:";
 static const char *const rest_names[KILN_DIVISION_COUNT] = {
     [KILN_DIVISION_BOUNCE] = "bounce:*", [KILN_DIVISION_LOBE] = "lobe:*", [KILN_DIVISION_LIGHT] = "lightgroup:*"};
-
-static const char *after(const char *name, const char *prefix) {
-    size_t length = strlen(prefix);
-    return strncmp(name, prefix, length) == 0 ? name + length : NULL;
-}
 
 static uint32_t find(const char *const *names, uint32_t count, const char *name) {
     uint32_t i = 0;
@@ -30,8 +27,8 @@ static uint32_t find(const char *const *names, uint32_t count, const char *name)
 /* A name without its sums; divisions 0: it is none. */
 static film_part parse(const char *name) {
     film_part part = {.name = name, .lobe = KILN_LOBE_COUNT, .bounce = PATH_BOUNCES};
-    const char *lobe = after(name, lobe_prefix);
-    part.light = after(name, light_prefix);
+    const char *lobe = text_after(name, lobe_prefix);
+    part.light = text_after(name, light_prefix);
     if (part.light) part.divisions = *part.light ? 1u << KILN_DIVISION_LIGHT : 0;
     else if (lobe) part.lobe = find(lobe_names, KILN_LOBE_COUNT, lobe);
     else part.bounce = find(bounce_names, PATH_BOUNCES, name);
@@ -71,7 +68,7 @@ static bool add(kiln_film *f, film_part part, kiln_report *report) {
     }
     part.name = arena_string(&p->arena, part.name);
     if (!part.name) return report_no_memory(report, "making the film");
-    part.light = after(part.name, light_prefix);
+    part.light = text_after(part.name, light_prefix);
     memmove(p->items + 1, p->items, part.bounce == BOUNCE_EMISSION ? p->count * sizeof *p->items : 0);
     p->items[part.bounce == BOUNCE_EMISSION ? 0 : p->count] = part;
     p->count++;

@@ -145,7 +145,8 @@ static bool make_all_texels(world_image *image, const kiln_image *pixels, float 
 }
 
 typedef struct decode_job {
-    world_image *images;
+    const world_image *images;
+    world_image *into; /* the same; NULL: nothing is kept */
     const kiln_scene *scene;
     float (*curves)[256];
     kiln_report *report;
@@ -155,8 +156,7 @@ typedef struct decode_job {
 static void decode_one(void *context, size_t index, uint32_t thread) {
     (void)thread;
     decode_job *job = context;
-    world_image *image = &job->images[index];
-    if (!image->wanted || atomic_load(&job->failed)) return;
+    if (!job->images[index].wanted || (job->into && atomic_load(&job->failed))) return;
     kiln_image pixels;
     bool owned;
     if (!pixels_of(&job->scene->images[index], &pixels, &owned, job->report)) {
@@ -164,38 +164,23 @@ static void decode_one(void *context, size_t index, uint32_t thread) {
         return;
     }
     kiln_where where = where_root(scene_image_place(&job->scene->images[index]));
-    if (!make_all_texels(image, &pixels, job->curves, &where, job->report)) atomic_store(&job->failed, true);
+    if (job->into && !make_all_texels(&job->into[index], &pixels, job->curves, &where, job->report))
+        atomic_store(&job->failed, true);
     if (owned) image_free(&pixels);
+}
+
+static bool decode(decode_job *job, uint32_t threads) {
+    threads_for(threads, job->scene->image_count, decode_one, job);
+    return !job->failed;
 }
 
 bool images_decode(world_image *images, const kiln_scene *scene, float curves[KILN_TRANSFER_COUNT][256],
                    uint32_t threads, kiln_report *report) {
-    decode_job job = {images, scene, curves, report, false};
-    threads_for(threads, scene->image_count, decode_one, &job);
-    return !job.failed;
-}
-
-typedef struct check_job {
-    const world_image *images;
-    const kiln_scene *scene;
-    kiln_report *report;
-    atomic_bool failed;
-} check_job;
-
-static void check_one(void *context, size_t index, uint32_t thread) {
-    (void)thread;
-    check_job *job = context;
-    kiln_image pixels;
-    bool owned;
-    if (!job->images[index].wanted) return;
-    if (!pixels_of(&job->scene->images[index], &pixels, &owned, job->report)) atomic_store(&job->failed, true);
-    else if (owned) image_free(&pixels);
+    return decode(&(decode_job){images, images, scene, curves, report, false}, threads);
 }
 
 bool images_check(const world_image *images, const kiln_scene *scene, uint32_t threads, kiln_report *report) {
-    check_job job = {images, scene, report, false};
-    threads_for(threads, scene->image_count, check_one, &job);
-    return !job.failed;
+    return decode(&(decode_job){images, NULL, scene, NULL, report, false}, threads);
 }
 
 void images_free(world_image *images, uint32_t count) {

@@ -106,6 +106,15 @@ static void the_nearest_word_is_found(void **state) {
     assert_null(text_nearest("render", words, 0));
 }
 
+static void prefixes_are_taken_off(void **state) {
+    (void)state;
+    assert_string_equal(text_after("lobe:sheen", "lobe:"), "sheen");
+    assert_string_equal(text_after("lobe:", "lobe:"), "");
+    assert_string_equal(text_after("lobe", ""), "lobe");
+    assert_null(text_after("lobe", "lobe:"));
+    assert_null(text_after("a lobe:", "lobe:"));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(text_grows),
@@ -114,6 +123,7 @@ int main(void) {
         cmocka_unit_test(doubles_are_read_whole),
         cmocka_unit_test(integers_are_read_whole),
         cmocka_unit_test(the_nearest_word_is_found),
+        cmocka_unit_test(prefixes_are_taken_off),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

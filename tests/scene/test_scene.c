@@ -182,6 +182,16 @@ static void missing_uv_sets_are_told_once(void **state) {
     assert_int_equal(kiln_report_count(f->report, KILN_WARNING), 1);
 }
 
+static void what_has_no_name_has_its_handle(void **state) {
+    (void)state;
+    kiln_arena arena = {0};
+    const char *name = "lamp";
+    assert_ptr_equal(scene_name(&arena, name, "light_", 3), name);
+    assert_string_equal(scene_name(&arena, "", "light_", 3), "light_3");
+    assert_string_equal(scene_name(&arena, NULL, "object ", 4294967295u), "object 4294967295");
+    arena_free(&arena);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         SCENE_TEST(counts_meshes_and_instances),
@@ -194,6 +204,7 @@ int main(void) {
         SCENE_TEST(worlds_beyond_double_are_refused),
         SCENE_TEST(nothing_enters_after_the_commit),
         SCENE_TEST(missing_uv_sets_are_told_once),
+        cmocka_unit_test(what_has_no_name_has_its_handle),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
