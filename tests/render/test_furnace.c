@@ -54,7 +54,8 @@ enum {
     WAX = LEAF | KILN_LAYER_VOLUME,
     FOG = WAX | KILN_LAYER_VOLUME_SCATTER,
     GLASS = KILN_LAYER_TRANSMISSION | KILN_LAYER_VOLUME,
-    COAT = KILN_LAYER_CLEARCOAT
+    COAT = KILN_LAYER_CLEARCOAT,
+    FILM = KILN_LAYER_IRIDESCENCE
 };
 
 static const stack stacks[] = {
@@ -65,6 +66,7 @@ static const stack stacks[] = {
     {"wax", WAX, 0, 0.5f, 0, 1.4f, 2e-2},
     {"wax that scatters within", FOG, 0, 0.5f, 0, 1.4f, 2e-2},
     {"glass", GLASS, 1, 0.3f, 0, 1.5f, 2e-2},
+    {"film on rough glass", GLASS | FILM, 1, 0.5f, 0, 1.5f, 7e-2},
     {"clear coat on a wax that scatters", FOG | COAT, 0, 0.5f, 0.2f, 1.4f, 1}, /* what it sends back in is lost */
     {"clear coat on glass", GLASS | COAT, 1, 0.3f, 0.1f, 1.5f, 1},
 };
@@ -77,6 +79,7 @@ static kiln_material stack_material(const stack *s) {
     m.clearcoat.value = 1, m.clearcoat_roughness.value = s->clearcoat_roughness;
     m.diffuse_transmission.value = 0.6f;
     m.thickness.value = 1;
+    m.iridescence.value = 1, m.iridescence_ior = 1.8f, m.iridescence_thickness[1] = 400;
     if (s->layers & KILN_LAYER_VOLUME_SCATTER) {
         m.attenuation_distance = 1;
         for (int k = 0; k < 3; k++) m.attenuation_color[k] = 0.3f, m.multiscatter_color[k] = 1;

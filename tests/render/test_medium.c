@@ -1,4 +1,5 @@
 /* The stack of media, and what they take. */
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -92,11 +93,23 @@ static void transmittance_is_exponential(void **state) {
     assert_true(medium_transmittance((const float[]){1e30f, 0, 0}, 0, 1e30f).x == 0);
 }
 
+/* The extension's definition: n_d at the d line, (n_d − 1)/V between the F and the C line. */
+static void index_is_cauchys(void **state) {
+    (void)state;
+    const float ior = 1.5168f, abbe = 64.17f;
+    world_medium m = {.ior = ior, .spread = (ior - 1) / abbe};
+    assert_true(fabsf(medium_ior(&m, 587.6f) - ior) < 2e-6f);
+    assert_true(fabsf(medium_ior(&m, 486.1f) - medium_ior(&m, 656.3f) - (ior - 1) / abbe) < 5e-6f);
+    m.spread = 5;
+    assert_true(medium_ior(&m, 780) == 1 && medium_ior(&m, 380) <= WORLD_IOR_MAX);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(media_nest),                   cmocka_unit_test(media_are_left_in_any_order),
         cmocka_unit_test(a_medium_may_be_entered_twice), cmocka_unit_test(overflow_forgets_the_outermost),
         cmocka_unit_test(absent_media_change_nothing),  cmocka_unit_test(transmittance_is_exponential),
+        cmocka_unit_test(index_is_cauchys),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

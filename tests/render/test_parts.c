@@ -247,6 +247,26 @@ static void a_lobe_alone_has_all(void **state) {
     }
 }
 
+/* What a clear coat reflects does not depend on what lies under it, though that loses what the coat keeps. */
+static void a_coat_is_the_same_on_any_base(void **state) {
+    (void)state;
+    double coats[2];
+    for (int white = 0; white < 2; white++) {
+        kiln_material floor = diffuse_material((float)white, (float)white, (float)white);
+        floor.layers = KILN_LAYER_CLEARCOAT, floor.clearcoat.value = 1, floor.clearcoat_roughness.value = 0.3f;
+        room r = room_of(&floor, LAMP);
+        must(kiln_scene_commit(r.b.scene, r.b.report), r.b.report, "committing");
+        names n;
+        name_all(&n, &r.b);
+        picture p = shoot(&r, &n, KILN_ESTIMATOR_MIS, 128);
+        coats[white] = mean_of_part(p.film, "lobe:clearcoat");
+        if (white) assert_true(mean_of_part(p.film, "lobe:diffuse") > coats[white]);
+        picture_free(&p);
+        builder_free(&r.b);
+    }
+    close_to(coats[1], coats[0], 0.05, "the coat's reflection"); /* the lamp is a little grey, and seen in it */
+}
+
 static void wrong_names_are_refused(void **state) {
     (void)state;
     static const char *const wrong[] = {"", "lobe:", "lobe:diffus", "lightgroup:", "lobes", "Direct"};
@@ -275,6 +295,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_sum_to_the_beauty), cmocka_unit_test(groups_are_pictures_of_one_light),
         cmocka_unit_test(lobes_do_not_depend_on_the_estimator), cmocka_unit_test(a_lobe_alone_has_all),
+        cmocka_unit_test(a_coat_is_the_same_on_any_base),
         cmocka_unit_test(wrong_names_are_refused)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,6 +45,13 @@ static kiln_material white_glass(void) { /* a thin wall */
     return m;
 }
 
+static kiln_material coated_white(float roughness) { /* the coat's own normals stay where they are */
+    kiln_material m = diffuse_material(1, 1, 1);
+    m.layers = KILN_LAYER_CLEARCOAT;
+    m.clearcoat.value = 1, m.clearcoat_roughness.value = roughness;
+    return m;
+}
+
 /* In an environment of radiance 1 what is white cannot be seen. slack: what tables leave of a compensated lobe. */
 static void check_furnace(const char *name, scene_builder *b, const kiln_camera *view, double slack) {
     set_environment(b, 0, 1, 1, 1);
@@ -71,6 +78,13 @@ static void reliefs_keep_all_light(void **state) {
     check_relief("white Lambert", diffuse_material(1, 1, 1), 1e-5);
     check_relief("white metal", white_metal(), 5e-3);
     check_relief("white glass", white_glass(), 5e-3);
+}
+
+/* A coat's horizon is not the base's; and where their normals differ, what it takes from the base is not what it keeps. */
+static void coats_keep_most_light(void **state) {
+    (void)state;
+    check_relief("smooth coat on a bent base", coated_white(0), 2e-2);
+    check_relief("rough coat on a bent base", coated_white(0.4f), 2e-2);
 }
 
 /* Sixteen segments and the normals of a ball, filling the picture to its silhouette. */
@@ -128,10 +142,12 @@ static void terminators_are_smooth(void **state) {
     if (fabs(coarse - fine) > 0.05 * fine) fail_msg("beside the terminator: %.5f, a fine ball %.5f", coarse, fine);
 }
 
-int main(void) {
+int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reliefs_keep_all_light), cmocka_unit_test(coarse_balls_keep_all_light),
+        cmocka_unit_test(reliefs_keep_all_light), cmocka_unit_test(coats_keep_most_light),
+        cmocka_unit_test(coarse_balls_keep_all_light),
         cmocka_unit_test(closed_balls_stay_dark), cmocka_unit_test(terminators_are_smooth),
     };
+    if (argc > 1) cmocka_set_test_filter(argv[1]); /* of mutants: the case that must see them */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "render/bsdf/lobes/phase.h"
 #include "render/film/film.h"
+#include "render/path/flight.h"
 #include "render/world/world.h"
 #include "tests/render/scenes.h"
 #include "tests/render/statistics.h"
@@ -64,6 +64,31 @@ static void phase_samples_follow_it(void **state) {
         double q = chi_square_p(around, expected, BINS);
         if (p < level || q < level) fail_msg("g = %g: p = %g along, %g around", g, p, q);
     }
+}
+
+/* Of a white medium's flights the weights are 1 in the mean, for every channel, also those that nothing is in: clear ones
+ * let all pass and scatter nothing. */
+static void flights_are_fair_to_clear_channels(void **state) {
+    (void)state;
+    static const vec3 sigmas[] = {{0, 1, 3}, {0, 0, 0.5f}, {0, 1e30f, 1}, {2, 2, 2}};
+    static const vec3 throughputs[] = {{1, 1, 1}, {1, 0, 0}, {0, 0, 0}, {0, 0.5f, 2}, {1e-30f, 1, 1}};
+    enum { DISTANCES = 2048, CHANNELS = 60 }; /* of which the shares are whole */
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 5; k++) {
+            dvec3 mean = {0, 0, 0};
+            const double n = DISTANCES * CHANNELS;
+            for (int u = 0; u < DISTANCES * CHANNELS; u++) { /* 0 is drawn too */
+                float at = (float)(u / CHANNELS) / DISTANCES, channel = ((float)(u % CHANNELS) + 0.5f) / CHANNELS;
+                flight f = flight_sample(sigmas[i], v3_splat(1), throughputs[k], 1.5f, at, channel);
+                assert_true(isfinite(f.distance) && f.distance >= 0 && f.distance <= 1.5f);
+                assert_true(isfinite(f.weight.x) && isfinite(f.weight.y) && isfinite(f.weight.z));
+                mean = d3_add(mean, (dvec3){(double)f.weight.x / n, (double)f.weight.y / n, (double)f.weight.z / n});
+            }
+            const vec3 t = throughputs[k];
+            if ((t.x > 0 && fabs(mean.x - 1) > 2e-2) || (t.y > 0 && fabs(mean.y - 1) > 2e-2) ||
+                (t.z > 0 && fabs(mean.z - 1) > 2e-2))
+                fail_msg("extinction %d, throughput %d: %.4f %.4f %.4f", i, k, mean.x, mean.y, mean.z);
+        }
 }
 
 static kiln_material medium(float ior, float r, float g, float b, float distance, float white, float anisotropy) {
@@ -228,15 +253,17 @@ static void open_meshes_end(void **state) {
     builder_free(&b);
 }
 
-int main(void) {
+int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_phase_function_integrates_to_one),
         cmocka_unit_test(phase_samples_follow_it),
+        cmocka_unit_test(flights_are_fair_to_clear_channels),
         cmocka_unit_test(white_media_are_white),
         cmocka_unit_test(coloured_media_walk_as_they_should),
         cmocka_unit_test(thin_fog_shows_a_lamp),
         cmocka_unit_test(estimators_agree_in_fog),
         cmocka_unit_test(open_meshes_end),
     };
+    if (argc > 1) cmocka_set_test_filter(argv[1]); /* of mutants: the case that must see them */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
