@@ -3,7 +3,7 @@
 
 #include "render/path/path.h"
 
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(KILN_ISA_BASE)
 path_tracer path_trace_samples_v2, path_trace_samples_v3, path_trace_samples_v4;
 
 typedef struct instance { const char *name; path_tracer *tracer; } instance;

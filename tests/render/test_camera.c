@@ -315,7 +315,7 @@ static void pixels_see_their_place(void **state) {
     builder_free(&b);
 }
 
-int main(void) {
+int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pinholes_project),        cmocka_unit_test(parallel_projections_project),
         cmocka_unit_test(cameras_have_no_scale),   cmocka_unit_test(lenses_focus),
@@ -323,5 +323,6 @@ int main(void) {
         cmocka_unit_test(what_is_in_focus_is_sharp), cmocka_unit_test(what_is_out_of_focus_blurs),
         cmocka_unit_test(pixels_see_their_place),
     };
+    if (argc > 1) cmocka_set_test_filter(argv[1]); /* of mutants: the case that must see them */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -201,10 +201,11 @@ static void translucent(void **state) {
     compare(build_translucent, &view, (uint32_t[]){256, 512, 1024});
 }
 
-int main(void) {
+int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(diffuse_room),     cmocka_unit_test(specular_chains),
                                        cmocka_unit_test(textured_emitter), cmocka_unit_test(partial_emitters),
                                        cmocka_unit_test(small_sun),
                                        cmocka_unit_test(glossy_under_a_sky), cmocka_unit_test(translucent)};
+    if (argc > 1) cmocka_set_test_filter(argv[1]); /* of mutants: the case that must see them */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

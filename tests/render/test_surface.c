@@ -270,7 +270,7 @@ static void hits_interpolate(void **state) {
     }
 }
 
-int main(void) {
+int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_hits_itself),    cmocka_unit_test(copies_do_not_hit_themselves),
         cmocka_unit_test(needles_hardly_hit_themselves), cmocka_unit_test(balls_are_tight),
@@ -278,5 +278,6 @@ int main(void) {
         cmocka_unit_test(normal_maps_bend),       cmocka_unit_test(normals_face_the_viewer),
         cmocka_unit_test(hits_interpolate),
     };
+    if (argc > 1) cmocka_set_test_filter(argv[1]); /* of mutants: the case that must see them */
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

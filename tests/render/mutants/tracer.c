@@ -1,10 +1,8 @@
-/* Linked in front of render/path/isa.c: the mutant's stages are the only ones there are. */
-#include "render/path/path.h"
-
-path_tracer path_trace_samples_mutant;
+/* Linked in front of render/path/isa.c: the instance whose stages the mutant replaces is the only one there is. */
+#include "render/path/stages.h"
 
 path_tracer *path_choose_tracer(const char *wanted, const char **name) {
     (void)wanted;
     if (name) *name = "mutant";
-    return path_trace_samples_mutant;
+    return STAGE(trace_samples);
 }
