@@ -64,8 +64,8 @@ KILN_API char *kiln_job_inspect(kiln_job *, const char *path, kiln_report *);
 
 /* What an asset costs, as JSON; free(): times of the phases up to the first sample, samples a second, time by stage,
  * memory; with the option "embree" the replay of its rays by Embree alone, with "growth" how time and memory grow. path
- * NULL: a generated scene. Nothing is written. Where an error was added it has no more than versions, warnings, errors and
- * exit_code. NULL: out of memory. */
+ * NULL: a generated scene. Nothing is written. Where an error was added it may lack what was not measured any more. NULL:
+ * out of memory. */
 KILN_API char *kiln_job_bench(kiln_job *, const char *path, kiln_report *);
 
 /* What the machine and the libraries offer, as JSON; free(). The job's options choose the colour config. */
