@@ -24,7 +24,8 @@ KERNEL void bsdf_make_roughness(unsigned mask, bsdf *b, const surface *s) {
     b->alpha = s->roughness * s->roughness;
     b->alphas = (vec2){b->alpha, b->alpha};
     b->roughness = albedo_roughness_node(s->roughness);
-    if (!(mask & BSDF_LAYERED)) return;
+    b->isotropy = 1.0f;
+    if (!(mask & BSDF_ANISOTROPIC)) return;
     b->alphas.x = fm_lerp(b->alpha, 1.0f, s->anisotropy * s->anisotropy);
     b->isotropy = 1.0f - 0.4f * (1.0f - (b->alphas.y + 1e-20f) / (b->alphas.x + 1e-20f)); /* no white metal above 1 */
     b->alpha = sqrtf(0.5f * (b->alphas.x * b->alphas.x + b->alpha * b->alpha));
@@ -57,14 +58,11 @@ KERNEL void bsdf_make_weights(unsigned mask, bsdf *b, float w_diffuse, float w_b
         w_glossy += average(mean.passes);
         b->p_straight = mean.p_passes;
     }
-    if (mask & BSDF_LAYERED) {
-        const bsdf_clearcoat *l = &b->clearcoat;
-        float under = l->through * b->sheen.through, mu = l->wo.z * (1.0f - 0.5f * l->alpha);
-        w_glossy *= under;
-        b->p_clearcoat = l->near * clearcoat_fresnel(mu);
-        b->p_sheen = average(b->sheen.color) * l->through * albedo_sheen(b->wo.z, b->sheen.node);
-        sum = b->p_clearcoat + b->p_sheen;
-    }
+    const bsdf_clearcoat *l = &b->clearcoat;
+    w_glossy *= l->through * b->sheen.through;
+    if (mask & BSDF_CLEARCOAT) b->p_clearcoat = l->near * clearcoat_fresnel(l->wo.z * (1.0f - 0.5f * l->alpha));
+    if (mask & BSDF_SHEEN) b->p_sheen = average(b->sheen.color) * l->through * albedo_sheen(b->wo.z, b->sheen.node);
+    sum = b->p_clearcoat + b->p_sheen;
     sum = sum + w_diffuse + w_below + w_glossy;
     float scale = sum > 0.0f ? 1.0f / sum : 0.0f;
     b->p_diffuse = w_diffuse * scale;
@@ -75,22 +73,18 @@ KERNEL void bsdf_make_weights(unsigned mask, bsdf *b, float w_diffuse, float w_b
 }
 
 KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo) {
-    bsdf b = {.wo = wo, .diffuse = s->base, .wide = s->base, .p_diffuse = average(s->base) > 0.0f ? 1.0f : 0.0f};
+    bsdf b = {.wo = wo, .diffuse = s->base, .wide = s->base, .p_diffuse = average(s->base) > 0.0f ? 1.0f : 0.0f,
+              .clearcoat.through = 1.0f, .sheen.through = 1.0f};
     if (!(mask & BSDF_GLOSSY)) return b;
     float opaque = (1.0f - s->metallic) * (1.0f - (mask & BSDF_TRANSMISSIVE ? s->transmission : 0.0f));
     bsdf_make_roughness(mask, &b, s);
     bsdf_make_fresnel(mask, &b, s, opaque);
-    float through = 1.0f;
-    layers_means means = {v3_splat(1.0f), v3_splat(1.0f), 1.0f};
-    if (mask & BSDF_LAYERED) {
-        layers_make(&b, s);
-        through = b.clearcoat.through * b.sheen.through;
-        means = layers_mean(&b);
-    }
+    layers_make(mask, &b, s);
     float mu = bsdf_table_mu(mask, &b, wo), full = bsdf_full(mu, b.alpha, b.roughness);
-    float full_mean = albedo_full_mean(b.roughness);
-    bsdf_up_down base = bsdf_make_base(mask, &b, s, opaque, mu, full, full_mean, &means, through);
-    vec3 metal = bsdf_make_metal(mask, &b, s, full, full_mean, &means, through), up = v3_add(base.up, metal);
+    float full_mean = albedo_full_mean(b.roughness), through = b.clearcoat.through * b.sheen.through;
+    layers_means means = mask & BSDF_COVERED ? layers_mean(mask, &b) : bsdf_plain_means(&b, full_mean);
+    bsdf_up_down base = bsdf_make_base(mask, &b, s, opaque, mu, full, &means, through);
+    vec3 metal = bsdf_make_metal(&b, s, full, full_mean, &means, through), up = v3_add(base.up, metal);
     b.wide = v3_add(up, base.down);
     float w_diffuse = average(up), w_below = average(base.down);
     if (mask & BSDF_TRANSMISSIVE) {
@@ -110,19 +104,16 @@ KERNEL vec3 bsdf_albedo(unsigned mask, const bsdf *b) {
     float mu = bsdf_table_mu(mask, b, b->wo), full = bsdf_full(mu, b->alpha, b->roughness);
     float share = bsdf_schlick_share(mu, b->alpha, b->roughness), facing = b->wo.z + b->alpha * (1.0f - b->wo.z);
     vec3 sum = v3_madd(b->reflect0, share, b->reflect1);
-    if (mask & BSDF_LAYERED) sum = bsdf_filmed(b, bsdf_mean_cosine(share), sum);
+    if (mask & BSDF_FILM) sum = bsdf_filmed(b, bsdf_mean_cosine(share), sum);
     sum = v3_scale(sum, full);
     if (mask & BSDF_TRANSMISSIVE) {
         vec3 f = bsdf_interface_fresnel(mask, b, facing), passes = v3_mul(b->tint, complement(f));
         float kept = 1.0f - bsdf_interface_loss(b, b->near_ior, mu, full);
         sum = v3_madd(sum, kept, v3_madd(passes, b->interface, f));
     }
-    if (mask & BSDF_LAYERED) {
-        const bsdf_clearcoat *l = &b->clearcoat;
-        vec3 sheen = v3_scale(b->sheen.color, albedo_sheen(b->wo.z, b->sheen.node));
-        sum = v3_scale(v3_madd(sheen, b->sheen.through, sum), l->through);
-        sum = v3_add(sum, v3_splat(1.0f - l->through));
-    }
+    sum = v3_scale(sum, b->sheen.through);
+    if (mask & BSDF_SHEEN) sum = v3_madd(sum, albedo_sheen(b->wo.z, b->sheen.node), b->sheen.color);
+    sum = v3_madd(v3_splat(1.0f - b->clearcoat.through), b->clearcoat.through, sum);
     return v3_add(b->wide, sum);
 }
 
@@ -140,14 +131,15 @@ typedef struct bsdf_toward {
 } bsdf_toward;
 
 KERNEL bsdf_toward bsdf_look(unsigned mask, const bsdf *b, vec3 wi) {
-    bsdf_toward t = {.wi = wi, .mirrored = {wi.x, wi.y, fm_max(wi.z, 0.0f)}, .up = wi.z > 0.0f, .under = 1.0f};
+    bsdf_toward t = {.wi = wi, .mirrored = {wi.x, wi.y, fm_max(wi.z, 0.0f)}, .up = wi.z > 0.0f, .in = {1.0f, 1.0f},
+                     .under = 1.0f};
     if (mask & BSDF_TRANSMISSIVE) t.mirrored.z = fabsf(wi.z);
     t.cosine = diffuse_pdf(wi, mask & BSDF_TRANSMISSIVE && !t.up ? -1.0f : 1.0f);
     if (!(mask & BSDF_GLOSSY)) return t;
     t.mu = bsdf_table_mu(mask, b, t.mirrored);
     t.full = bsdf_full(t.mu, b->alpha, b->roughness);
-    if (mask & BSDF_LAYERED) {
-        t.in = layers_toward(b, t.mirrored, !t.up);
+    if (mask & BSDF_COVERED) {
+        t.in = layers_toward(mask, b, t.mirrored, !t.up);
         t.under = layers_under(b, t.in);
     }
     return t;
@@ -159,15 +151,13 @@ KERNEL bsdf_value bsdf_evaluate_wide(unsigned mask, const bsdf *b, const bsdf_to
     vec3 enters = complement(bsdf_coat_albedo(mask, b, t->mu, t->full));
     vec3 value = v3_madd(v3_mul(b->diffuse, enters), 1.0f - t->full, b->metal_again);
     float pdf = b->p_diffuse;
-    if (mask & BSDF_LAYERED) {
-        value = v3_select(t->up, value, v3_mul(b->passes, enters));
-        value = v3_scale(value, t->in.clearcoat * t->in.sheen);
-    }
+    vec3 passes = mask & BSDF_TRANSLUCENT ? v3_mul(b->passes, enters) : v3_splat(0.0f);
+    if (mask & BSDF_TRANSMISSIVE) value = v3_select(t->up, value, passes);
+    value = v3_scale(value, t->in.clearcoat * t->in.sheen);
     if (mask & BSDF_TRANSMISSIVE) {
         albedo_node ior = {t->up ? b->near_ior.index : b->far_ior.index,
                            t->up ? b->near_ior.fraction : b->far_ior.fraction};
         float again = t->under * bsdf_interface_loss(b, ior, t->mu, t->full);
-        if (!(mask & BSDF_LAYERED)) value = v3_scale(value, t->up ? 1.0f : 0.0f);
         vec3 share = v3_select(t->up, v3_splat(b->again_near), v3_scale(b->tint, b->again_far));
         value = v3_madd(value, again, share);
         pdf = t->up ? b->p_diffuse : b->p_below;
@@ -204,14 +194,14 @@ KERNEL bsdf_value bsdf_evaluate_glossy(unsigned mask, const bsdf *b, const bsdf_
     return (bsdf_value){v3_scale(f.reflects, live ? value * t->under : 0.0f), live ? p * pdf : 0.0f};
 }
 
-/* top: what layers do towards wi, by the clear coat's own horizon; written under BSDF_LAYERED. */
+/* top: what layers do towards wi, by the clear coat's own horizon; written where there are some. */
 KERNEL bsdf_value bsdf_evaluate_toward(unsigned mask, const bsdf *b, const bsdf_toward *t, layers_value *top) {
     bsdf_value v = bsdf_evaluate_wide(mask, b, t);
     if (!(mask & BSDF_GLOSSY)) return v;
     bsdf_value glossy = bsdf_evaluate_glossy(mask, b, t);
     v = (bsdf_value){v3_add(v.value, glossy.value), v.pdf + glossy.pdf};
-    if (!(mask & BSDF_LAYERED)) return v;
-    *top = layers_evaluate(b, t->wi, t->in);
+    if (!(mask & (BSDF_CLEARCOAT | BSDF_SHEEN))) return v;
+    *top = layers_evaluate(mask, b, t->wi, t->in);
     float above = t->up ? 1.0f : 0.0f;
     return (bsdf_value){v3_madd(v.value, above, top->value), v.pdf + above * top->pdf};
 }
@@ -243,11 +233,13 @@ KERNEL bsdf_choice bsdf_choose(unsigned mask, const bsdf *b, float lobe, float p
         c.below = (lobe >= from) & (lobe < from + b->p_below);
         from += b->p_below;
     }
-    if (mask & BSDF_LAYERED) {
-        float to = from + b->p_clearcoat;
-        c.clearcoat = (lobe >= from) & (lobe < to);
-        from += b->p_clearcoat + b->p_sheen;
-        c.sheen = (lobe >= to) & (lobe < from);
+    if (mask & BSDF_CLEARCOAT) {
+        c.clearcoat = (lobe >= from) & (lobe < from + b->p_clearcoat);
+        from += b->p_clearcoat;
+    }
+    if (mask & BSDF_SHEEN) {
+        c.sheen = (lobe >= from) & (lobe < from + b->p_sheen);
+        from += b->p_sheen;
     }
     c.reflect = lobe >= from;
     if (mask & BSDF_TRANSMISSIVE) {
@@ -275,11 +267,10 @@ KERNEL vec3 bsdf_at_delta(unsigned mask, const bsdf *b, bsdf_choice c, const bsd
         vec3 passes = v3_scale(flat->passes, 1.0f / fm_max(b->p_glossy * flat->p_passes * squeeze, 1e-30f));
         f = v3_select(c.transmit, passes, f);
     }
-    if (mask & BSDF_LAYERED) {
-        float coat = b->clearcoat.gloss * clearcoat_fresnel(b->clearcoat.wo.z) / fm_max(b->p_clearcoat, 1e-30f);
-        f = v3_select(c.clearcoat, v3_splat(coat), v3_scale(f, under));
-    }
-    return f;
+    f = v3_scale(f, under);
+    if (!(mask & BSDF_CLEARCOAT)) return f;
+    float coat = b->clearcoat.gloss * clearcoat_fresnel(b->clearcoat.wo.z) / fm_max(b->p_clearcoat, 1e-30f);
+    return v3_select(c.clearcoat, v3_splat(coat), f);
 }
 
 /* Where REFLECTION and TRANSMISSION lead, by way of a microfacet. */
@@ -323,9 +314,9 @@ KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 d
     wi = v3_select(chosen.reflect, met.reflected, wi);
     /* In numbers: gcc makes of the flags a choice between truth values, which does not vectorise. */
     float spread = (chosen.reflect ? b->alphas.x : 1.0f) * (chosen.transmit & met.straight ? 0.0f : 1.0f);
-    if (mask & BSDF_LAYERED) {
+    if (mask & BSDF_SHEEN) wi = v3_select(chosen.sheen, sheen_sample(direction, b->sheen.roughness), wi);
+    if (mask & BSDF_CLEARCOAT) {
         wi = v3_select(chosen.clearcoat, bsdf_sample_clearcoat(b, direction), wi);
-        wi = v3_select(chosen.sheen, sheen_sample(direction, b->sheen.roughness), wi);
         spread *= chosen.clearcoat ? b->clearcoat.alpha : 1.0f;
         int own = v3_dot(wi, b->clearcoat.frame.z) > 0.0f;
         possible = (chosen.clearcoat == 0) | own;
@@ -341,7 +332,7 @@ KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 d
     float scale = lives & (v.pdf > 0.0f) ? 1.0f / v.pdf : 0.0f;
     vec3 at_delta = v3_scale(bsdf_at_delta(mask, b, chosen, &met.facet, t.under), lives | hangs ? 1.0f : 0.0f);
     vec3 multiplier = v3_scale(v.value, scale);
-    if (mask & BSDF_LAYERED) /* a clear coat has its own horizon */
+    if (mask & BSDF_CLEARCOAT) /* a clear coat has its own horizon */
         multiplier = v3_select(hangs, v3_scale(top.value, 1.0f / fm_max(top.pdf, 1e-30f)), multiplier);
     return (bsdf_sampled){wi, v3_select(delta, at_delta, multiplier), lives & !delta & !hangs ? v.pdf : 0.0f, delta,
                           chosen.transmit | chosen.below};

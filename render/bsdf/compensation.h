@@ -25,18 +25,22 @@ KERNEL vec3 bsdf_divide(vec3 a, vec3 mean) {
     return v3(a.x / fm_max(mean.x, BSDF_LEAST_LOSS), a.y / fm_max(mean.y, BSDF_LEAST_LOSS), a.z / fm_max(mean.z, BSDF_LEAST_LOSS));
 }
 
-/* The base under its coat, and under layers. means, through: theirs, the latter at wo; read under BSDF_LAYERED. */
+/* What a coat without layers lets in, and what nothing dims of multiple scattering. */
+KERNEL layers_means bsdf_plain_means(const bsdf *b, float full_mean) {
+    vec3 enters = complement(v3_madd(v3_scale(b->f0, full_mean), albedo_schlick_mean(b->roughness),
+                                     v3_sub(v3_splat(b->f90), b->f0)));
+    return (layers_means){enters, enters, 1.0f};
+}
+
+/* The base under its coat, and under layers. means, through: theirs, the latter at wo. */
 KERNEL bsdf_up_down bsdf_make_base(unsigned mask, bsdf *b, const surface *s, float opaque, float mu, float full,
-                                  float full_mean, const layers_means *means, float through) {
-    vec3 enters = v3_scale(complement(bsdf_coat_albedo(mask, b, mu, full)), opaque);
-    if (!(mask & BSDF_LAYERED)) {
-        vec3 mean = v3_madd(v3_scale(b->f0, full_mean), albedo_schlick_mean(b->roughness),
-                            v3_sub(v3_splat(b->f90), b->f0));
+                                  const layers_means *means, float through) {
+    vec3 enters = v3_scale(complement(bsdf_coat_albedo(mask, b, mu, full)), opaque * through);
+    if (!(mask & BSDF_TRANSLUCENT)) {
         enters = v3_mul(enters, s->base);
-        b->diffuse = bsdf_divide(enters, complement(mean));
+        b->diffuse = bsdf_divide(enters, means->near);
         return (bsdf_up_down){enters, v3_splat(0.0f)};
     }
-    enters = v3_scale(enters, through);
     vec3 up = v3_mul(enters, v3_scale(s->base, 1.0f - s->diffuse_transmission));
     vec3 down = v3_mul(enters, v3_scale(s->diffuse_transmission_color, s->diffuse_transmission));
     /* From either side of a solid's boundary: the larger mean keeps what crosses symmetric and below what came. */
@@ -51,15 +55,15 @@ KERNEL bsdf_up_down bsdf_make_base(unsigned mask, bsdf *b, const surface *s, flo
 }
 
 /* F_ms = F² E/(1 − F (1 − E)) of the mean Fresnel term F = (20 F0 + 1)/21 and the mean albedo E. */
-KERNEL vec3 bsdf_make_metal(unsigned mask, bsdf *b, const surface *s, float full, float full_mean,
+KERNEL vec3 bsdf_make_metal(bsdf *b, const surface *s, float full, float full_mean,
                             const layers_means *means, float through) {
     vec3 f = v3_madd(v3_splat(1.0f / 21.0f), 20.0f / 21.0f, s->base), lost = v3_scale(f, 1.0f - full_mean);
     vec3 again = v3(f.x * f.x * full_mean / (1.0f - lost.x), f.y * f.y * full_mean / (1.0f - lost.y),
                     f.z * f.z * full_mean / (1.0f - lost.z));
     again = v3_scale(again, s->metallic * (1.0f - full));
-    if (mask & BSDF_LAYERED) again = v3_scale(again, through * b->isotropy);
+    again = v3_scale(again, through * b->isotropy);
     b->metal_again = v3_scale(again, 1.0f / fm_max(1.0f - full_mean, BSDF_LEAST_LOSS));
-    if (mask & BSDF_LAYERED) b->metal_again = v3_scale(b->metal_again, 1.0f / fm_max(means->again, BSDF_LEAST_LOSS));
+    b->metal_again = v3_scale(b->metal_again, 1.0f / fm_max(means->again, BSDF_LEAST_LOSS));
     return again;
 }
 
@@ -67,7 +71,8 @@ KERNEL vec3 bsdf_make_metal(unsigned mask, bsdf *b, const surface *s, float full
 KERNEL bsdf_up_down bsdf_make_interface(unsigned mask, bsdf *b, float mu, float full, float full_mean) {
     float loss = bsdf_interface_loss(b, b->near_ior, mu, full);
     /* Tables know no films: rather too little than too much. */
-    if (mask & BSDF_LAYERED) loss *= b->isotropy * (1.0f - 0.25f * b->film.share);
+    loss *= b->isotropy;
+    if (mask & BSDF_FILM) loss *= 1.0f - 0.25f * b->film.share;
     float near_mean = bsdf_interface_mean_loss(b, b->near_ior, full_mean);
     float far_mean = bsdf_interface_mean_loss(b, b->far_ior, full_mean);
     float eta2 = b->thin > 0.5f ? 1.0f : b->eta * b->eta;

@@ -26,7 +26,7 @@ KERNEL thin_film bsdf_film_at(const bsdf *b, float c) {
 /* Of a transmissive interface, its film included. */
 KERNEL vec3 bsdf_interface_fresnel(unsigned mask, const bsdf *b, float c) {
     vec3 exact = bsdf_exact_fresnel(b, c);
-    if (!(mask & BSDF_LAYERED)) return exact;
+    if (!(mask & BSDF_FILM)) return exact;
     thin_film f = bsdf_film_at(b, c);
     int total = exact.x >= 1.0f;
     return v3_select(total, exact, v3_lerp(exact, thin_film_reflectance(&f, b->f0), b->film.share));
@@ -48,7 +48,7 @@ typedef struct bsdf_facet {
 
 KERNEL bsdf_facet bsdf_facet_at(unsigned mask, const bsdf *b, float c) {
     vec3 f = v3_madd(b->reflect0, fresnel_schlick_weight(c), b->reflect1);
-    if (mask & BSDF_LAYERED) f = bsdf_filmed(b, c, f);
+    if (mask & BSDF_FILM) f = bsdf_filmed(b, c, f);
     if (!(mask & BSDF_TRANSMISSIVE)) return (bsdf_facet){f, v3_splat(0.0f), 0.0f};
     vec3 interface = bsdf_interface_fresnel(mask, b, c), passes = v3_mul(b->tint, complement(interface));
     vec3 reflects = v3_madd(f, b->interface, interface);
@@ -68,7 +68,7 @@ KERNEL float bsdf_schlick_share(float mu, float alpha, albedo_node roughness) {
 /* The cosine that tables are asked for. Anisotropic ones see w from where an isotropic surface of the larger alpha would
  * throw shadows as long. */
 KERNEL float bsdf_table_mu(unsigned mask, const bsdf *b, vec3 w) {
-    if (!(mask & BSDF_LAYERED)) return w.z;
+    if (!(mask & BSDF_ANISOTROPIC)) return w.z;
     float y = w.y * (b->alphas.y + 1e-20f) / (b->alphas.x + 1e-20f);
     return fm_min(w.z / sqrtf(w.z * w.z + w.x * w.x + y * y), 1.0f); /* |w| = 1, and x or z is not 0 */
 }
@@ -80,7 +80,7 @@ KERNEL float bsdf_mean_cosine(float share) { return 1.0f - fm_pow(share, 0.2f); 
 KERNEL vec3 bsdf_coat_albedo(unsigned mask, const bsdf *b, float mu, float full) {
     float share = bsdf_schlick_share(mu, b->alpha, b->roughness);
     vec3 f = v3_madd(b->f0, share, v3_sub(v3_splat(b->f90), b->f0));
-    if (mask & BSDF_LAYERED) {
+    if (mask & BSDF_FILM) {
         thin_film t = bsdf_film_at(b, bsdf_mean_cosine(share));
         f = v3_lerp(f, thin_film_reflectance(&t, b->f0), b->film.share);
     }

@@ -51,7 +51,7 @@ static inline bsdf_parts bsdf_shares_of_sample(unsigned mask, const bsdf *b, flo
     bsdf_sampled next = bsdf_sample(mask, b, lobe, direction);
     if (next.pdf > 0.0f) return bsdf_shares(mask, b, next.wi);
     bsdf_parts shares = {0};
-    int clearcoat = mask & BSDF_LAYERED && bsdf_choose(mask, b, lobe, 1.0f).clearcoat;
+    int clearcoat = mask & BSDF_CLEARCOAT && bsdf_choose(mask, b, lobe, 1.0f).clearcoat;
     kiln_lobe delta = next.crosses ? KILN_LOBE_TRANSMISSION : clearcoat ? KILN_LOBE_CLEARCOAT : KILN_LOBE_SPECULAR;
     shares.of[delta] = v3_splat(1.0f);
     return shares;

@@ -17,18 +17,18 @@ typedef struct thin_film {
     vec3 first, second; /* sensitivity of the channels to the phase difference, once and twice */
 } thin_film;
 
-KERNEL float thin_film_wave(float amplitude, float turns_per_nm, float spread, float path_nm) {
-    return amplitude * fm_sincos_2pi(turns_per_nm * path_nm).cos * fm_exp(-spread * path_nm * path_nm);
+/* Gaussian fits of the CIE 1931 matching functions in Fourier space (Belcour and Barla 2017, section 4 and its code): one
+ * term's sensitivity to an optical path difference in nanometres, and to twice that: cos 2x = 2 cos² x − 1, and a
+ * Gaussian's fourth power. */
+typedef struct thin_film_wave { float first, second; } thin_film_wave;
+
+KERNEL thin_film_wave thin_film_wave_of(float amplitude, float turns_per_nm, float spread, float path_nm) {
+    float c = fm_sincos_2pi(turns_per_nm * path_nm).cos, e = fm_exp(-spread * path_nm * path_nm), e2 = e * e;
+    return (thin_film_wave){amplitude * c * e, amplitude * (2.0f * c * c - 1.0f) * e2 * e2};
 }
 
-/* Gaussian fits of the CIE 1931 matching functions in Fourier space (Belcour and Barla 2017, section 4 and its code), for
- * an optical path difference in nanometres; to Rec.709. A path of 0 gives no exact white: the constant term does not go
- * through here. */
-KERNEL vec3 thin_film_sensitivity(float path_nm) {
-    float x = thin_film_wave(0.84659000f, 1.6810e-3f, 1.7085470e-7f, path_nm) +
-              thin_film_wave(0.15386831f, 2.2399e-3f, 1.7876617e-7f, path_nm);
-    float y = thin_film_wave(1.0002219f, 1.7953e-3f, 3.6733088e-7f, path_nm);
-    float z = thin_film_wave(1.0011225f, 2.2084e-3f, 2.6103525e-7f, path_nm);
+/* XYZ to Rec.709. */
+KERNEL vec3 thin_film_rgb(float x, float y, float z) {
     return v3(3.2404542f * x - 1.5371385f * y - 0.4985314f * z, -0.9692660f * x + 1.8760108f * y + 0.0415560f * z,
               0.0556434f * x - 0.2040259f * y + 1.0572252f * z);
 }
@@ -40,13 +40,19 @@ KERNEL float thin_film_share(float share, float thickness_nm) {
     return share * t * t * (3.0f - 2.0f * t);
 }
 
-/* c: cosine outside of the film, ≥ 0; n ≥ 1. */
+/* c: cosine outside of the film, ≥ 0; n ≥ 1. A path of 0 gives no exact white: the constant term of the series does not go
+ * through the fits. */
 KERNEL thin_film thin_film_make(float c, float n, float thickness_nm) {
     float r0 = fresnel_normal(n);
     float inside2 = 1.0f - (1.0f - c * c) / (n * n), inside = sqrtf(inside2 > 0.0f ? inside2 : 0.0f);
     float path = fm_min(2.0f * n * thickness_nm * inside, 1e5f); /* beyond nothing interferes */
+    thin_film_wave x0 = thin_film_wave_of(0.84659000f, 1.6810e-3f, 1.7085470e-7f, path);
+    thin_film_wave x1 = thin_film_wave_of(0.15386831f, 2.2399e-3f, 1.7876617e-7f, path);
+    thin_film_wave y = thin_film_wave_of(1.0002219f, 1.7953e-3f, 3.6733088e-7f, path);
+    thin_film_wave z = thin_film_wave_of(1.0011225f, 2.2084e-3f, 2.6103525e-7f, path);
     return (thin_film){n, r0 + (1.0f - r0) * fresnel_schlick_weight(c), fresnel_schlick_weight(inside),
-                  thin_film_sensitivity(path), thin_film_sensitivity(2.0f * path)};
+                       thin_film_rgb(x0.first + x1.first, y.first, z.first),
+                       thin_film_rgb(x0.second + x1.second, y.second, z.second)};
 }
 
 /* One channel: f0 of what the film lies on, as it would be in air; the index behind it is taken for real. */

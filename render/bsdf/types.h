@@ -20,7 +20,13 @@
 enum {
     BSDF_GLOSSY = 1 << 0,       /* REFLECTION */
     BSDF_TRANSMISSIVE = 1 << 1, /* TRANSMISSION and BELOW too; implies GLOSSY */
-    BSDF_LAYERED = 1 << 2       /* CLEARCOAT, SHEEN, films, anisotropy, diffuse transmission; implies the others */
+    BSDF_CLEARCOAT = 1 << 2,    /* CLEARCOAT */
+    BSDF_ANISOTROPIC = 1 << 3,  /* two alphas */
+    BSDF_SHEEN = 1 << 4,        /* SHEEN */
+    BSDF_TRANSLUCENT = 1 << 5,  /* diffuse transmission; implies TRANSMISSIVE */
+    BSDF_FILM = 1 << 6,         /* thin films */
+    BSDF_COVERED = BSDF_CLEARCOAT | BSDF_SHEEN | BSDF_FILM, /* light passes something on its way to the base */
+    BSDF_LAYERED = BSDF_COVERED | BSDF_ANISOTROPIC | BSDF_TRANSLUCENT /* any of them implies GLOSSY */
 };
 
 /* A mean loss is a divisor, and its inverse the largest weight of a sample of what is given back: nearly smooth surfaces,
@@ -38,7 +44,7 @@ typedef struct surface {
     vec3 through;         /* what the interface lets through is tinted by it: base, or that of one wavelength */
     float eta;            /* n of the far side over n of wo's side; thin wall: of the wall over the air */
     float thin;           /* 1: an infinitely thin wall, 0: the boundary of a solid */
-    /* LAYERED */
+    /* LAYERED, each as its bit says */
     float near, far;      /* 1: clearcoat, sheen and film lie on wo's side, on the far side; else 0 */
     float anisotropy;     /* strength */
     vec3 along;           /* direction of greater roughness, of unit length, at a right angle to the normal; render space */

@@ -100,7 +100,7 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
     X(float, map_x) X(float, map_y) X(float, map_z) /* tangent-space normal */                                         \
     X(float, tan_x) X(float, tan_y) X(float, tan_z) X(float, tan_w)
 
-/* What the materials of KIND_LAYERED say besides. */
+/* What the materials of KIND_COATED, KIND_LAYERED and KIND_FILMED say besides. */
 #define LAYER_FIELDS(X)                                                                                                \
     X(float, near_layers) X(float, far_layers)   /* 1: on wo's side, on the far side */                                \
     X(float, clearcoat) X(float, clearcoat_roughness)                                                                  \
@@ -184,6 +184,11 @@ typedef struct batch {
     trace_counts camera_rays, bounce_rays, shadow_rays;
     stage_clock clock;
 } batch;
+
+/* Of some kinds that follow one another. */
+static inline lane_range kinds_range(const batch *b, material_kind first, material_kind last) {
+    return (lane_range){b->kinds[first].first, b->kinds[last].end};
+}
 
 static inline path_state *batch_state(batch *b) { return &b->states[b->current]; }
 static inline path_hit *batch_hit(batch *b) { return &b->hits[b->current]; }

@@ -20,18 +20,24 @@ KERNEL surface lane_surface(unsigned mask, const path_scratch *x, uint32_t i) {
         s.eta = x->eta[i];
         s.thin = x->thin[i];
     }
-    if (mask & BSDF_LAYERED) {
-        s.near = x->near_layers[i], s.far = x->far_layers[i];
+    if (mask & BSDF_COVERED) s.near = x->near_layers[i], s.far = x->far_layers[i];
+    if (mask & BSDF_ANISOTROPIC) {
         s.anisotropy = x->anisotropy[i];
-        s.film = x->film[i], s.film_ior = x->film_ior[i], s.film_thickness = x->film_thickness[i];
+        s.along = v3(x->along_x[i], x->along_y[i], x->along_z[i]);
+    }
+    if (mask & BSDF_CLEARCOAT) {
         s.clearcoat = x->clearcoat[i], s.clearcoat_roughness = x->clearcoat_roughness[i];
         s.clearcoat_normal = v3(x->coat_x[i], x->coat_y[i], x->coat_z[i]);
+    }
+    if (mask & BSDF_SHEEN) {
         s.sheen = v3(x->sheen_r[i], x->sheen_g[i], x->sheen_b[i]);
         s.sheen_roughness = x->sheen_roughness[i];
+    }
+    if (mask & BSDF_FILM) s.film = x->film[i], s.film_ior = x->film_ior[i], s.film_thickness = x->film_thickness[i];
+    if (mask & BSDF_TRANSLUCENT) {
         s.diffuse_transmission = x->pass[i];
         s.diffuse_transmission_color = v3_mul(v3(x->pass_r[i], x->pass_g[i], x->pass_b[i]),
                                               v3(x->hue_r[i], x->hue_g[i], x->hue_b[i]));
-        s.along = v3(x->along_x[i], x->along_y[i], x->along_z[i]);
     }
     return s;
 }

@@ -61,11 +61,12 @@ KERNEL void bounce(int transmissive, int mapped, int coated, batch *b, lane_rang
 
 void STAGE(cone_scatter)(const path_context *c, batch *b) {
     int mapped = (c->world->slots & 1u << SLOT_NORMAL) != 0;
+    int coated = (c->world->slots & 1u << SLOT_CLEARCOAT_NORMAL) != 0;
     bounce(0, mapped, 0, b, b->kinds[KIND_DIFFUSE]);
     bounce(0, mapped, 0, b, b->kinds[KIND_GLOSSY]);
     bounce(1, mapped, 0, b, b->kinds[KIND_TRANSMISSIVE]);
-    if (c->world->slots & 1u << SLOT_CLEARCOAT_NORMAL) bounce(1, mapped, 1, b, b->kinds[KIND_LAYERED]);
-    else bounce(1, mapped, 0, b, b->kinds[KIND_LAYERED]);
+    bounce(0, mapped, coated, b, b->kinds[KIND_COATED]);
+    bounce(1, mapped, coated, b, kinds_range(b, KIND_LAYERED, KIND_FILMED));
     path_state *s = batch_state(b); /* what a medium has scattered may come to a focus anywhere */
     for (uint32_t i = b->surfaces; i < b->n; i++) s->width[i] = s->spread[i] = 0.0f;
 }

@@ -59,10 +59,8 @@ static void attenuate(const path_context *c, batch *b) {
 }
 
 void STAGE(connect)(const path_context *c, batch *b) {
-    weigh(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
-    weigh(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
-    weigh(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
-    weigh(SHADING_MASK_LAYERED, c, b, b->kinds[KIND_LAYERED]);
+#define WEIGH_KIND(kind) weigh(SHADING_MASK_##kind, c, b, b->kinds[KIND_##kind]);
+    SHADING_KINDS(WEIGH_KIND)
     if (c->world->scatters) weigh_scattering(c, b);
     if (c->world->absorbs) attenuate(c, b);
 

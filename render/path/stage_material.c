@@ -172,18 +172,23 @@ static void apply_slot(const world *w, const path_hit *h, path_scratch *x, uint3
     }
 }
 
+static void load_all_layers(const world *w, const path_hit *h, path_scratch *x, lane_range lanes) {
+    for (uint32_t i = lanes.first; i < lanes.end; i++) {
+        load_layers(w, x, i);
+        load_tangent(w, h, x, i);
+    }
+}
+
 void STAGE(material)(const path_context *c, batch *b) {
     const world *w = c->world;
     const path_hit *h = batch_hit(b);
     path_scratch *x = &b->scratch;
     for (uint32_t i = 0; i < b->surfaces; i++) load_diffuse(w, x, i);
-    for (uint32_t i = b->kinds[KIND_GLOSSY].first; i < b->kinds[KIND_LAYERED].end; i++) load_glossy(w, x, i);
-    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_LAYERED].end; i++)
+    for (uint32_t i = b->kinds[KIND_GLOSSY].first; i < b->kinds[KIND_FILMED].end; i++) load_glossy(w, x, i);
+    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_FILMED].end; i++)
         load_transmissive(w, x, i);
-    for (uint32_t i = b->kinds[KIND_LAYERED].first; i < b->kinds[KIND_LAYERED].end; i++) {
-        load_layers(w, x, i);
-        load_tangent(w, h, x, i);
-    }
+    load_all_layers(w, h, x, b->kinds[KIND_COATED]);
+    load_all_layers(w, h, x, kinds_range(b, KIND_LAYERED, KIND_FILMED));
     if (w->colors) tint_by_vertices(w, h, x, b->surfaces);
     if (w->slots & 1u << SLOT_NORMAL) for (uint32_t i = 0; i < b->surfaces; i++) x->map_x[i] = x->map_y[i] = 0.0f;
     for (int slot = 0; slot < SLOT_COUNT; slot++)

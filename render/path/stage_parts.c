@@ -57,10 +57,8 @@ void STAGE(part_light)(const path_context *c, batch *b) {
     const path_state *s = batch_state(b);
     const path_scratch *x = &b->scratch;
     if (b->depth == 0) {
-        record_first(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
-        record_first(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
-        record_first(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
-        record_first(SHADING_MASK_LAYERED, c, b, b->kinds[KIND_LAYERED]);
+#define RECORD_FIRST_KIND(kind) record_first(SHADING_MASK_##kind, c, b, b->kinds[KIND_##kind]);
+        SHADING_KINDS(RECORD_FIRST_KIND)
         for (uint32_t i = b->surfaces; i < b->n; i++)
             if (counts(s, i) && x->visible[i] == RAY_REACHES)
                 parts_record(c->parts, b->parts, slot_index(s->slot[i]), radiance_of(s, i), BOUNCE_DIRECT,
@@ -87,10 +85,8 @@ KERNEL void share_first(unsigned mask, batch *b, lane_range lanes) {
 
 void STAGE(part_scatter)(const path_context *c, batch *b) {
     (void)c;
-    share_first(SHADING_MASK_DIFFUSE, b, b->kinds[KIND_DIFFUSE]);
-    share_first(SHADING_MASK_GLOSSY, b, b->kinds[KIND_GLOSSY]);
-    share_first(SHADING_MASK_TRANSMISSIVE, b, b->kinds[KIND_TRANSMISSIVE]);
-    share_first(SHADING_MASK_LAYERED, b, b->kinds[KIND_LAYERED]);
+#define SHARE_FIRST_KIND(kind) share_first(SHADING_MASK_##kind, b, b->kinds[KIND_##kind]);
+    SHADING_KINDS(SHARE_FIRST_KIND)
     const path_state *s = batch_state(b);
     for (uint32_t i = b->surfaces; i < b->n; i++)
         if (counts(s, i)) *shares_of(b, s, i) = scattered;

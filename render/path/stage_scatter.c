@@ -32,9 +32,9 @@ KERNEL void scatter(unsigned mask, const path_context *c, batch *b, lane_range l
 static void cross_media(const world *w, batch *b) {
     path_state *s = batch_state(b);
     const path_scratch *x = &b->scratch;
-    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_LAYERED].end; i++)
+    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_FILMED].end; i++)
         if (x->crosses[i]) s->media[i] = x->beyond[i];
-    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; w->spectrum && i < b->kinds[KIND_LAYERED].end; i++)
+    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; w->spectrum && i < b->kinds[KIND_FILMED].end; i++)
         if (w->media[medium_top(s->media[i])].spread > 0.0f) s->slot[i] |= SLOT_DISPERSED;
 }
 
@@ -57,10 +57,8 @@ static void scatter_in_media(const path_context *c, batch *b) {
 }
 
 void STAGE(scatter)(const path_context *c, batch *b) {
-    scatter(SHADING_MASK_DIFFUSE, c, b, b->kinds[KIND_DIFFUSE]);
-    scatter(SHADING_MASK_GLOSSY, c, b, b->kinds[KIND_GLOSSY]);
-    scatter(SHADING_MASK_TRANSMISSIVE, c, b, b->kinds[KIND_TRANSMISSIVE]);
-    scatter(SHADING_MASK_LAYERED, c, b, b->kinds[KIND_LAYERED]);
+#define SCATTER_KIND(kind) scatter(SHADING_MASK_##kind, c, b, b->kinds[KIND_##kind]);
+    SHADING_KINDS(SCATTER_KIND)
     if (c->world->scatters) scatter_in_media(c, b);
     if (c->world->media_count > 1) cross_media(c->world, b);
 }

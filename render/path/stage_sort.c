@@ -64,7 +64,7 @@ void STAGE(sort)(const path_context *c, batch *b) {
             if (kind[i] == k) order[count++] = i;
         b->kinds[k].end = count = fill_group(order, count);
     }
-    b->surfaces = b->kinds[KIND_LAYERED].end;
+    b->surfaces = b->kinds[KIND_MEDIUM].first;
     move(w, b, count, true);
 }
 

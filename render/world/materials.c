@@ -157,9 +157,14 @@ static void set_layers(const builder *b, world_material *m, const kiln_material 
     v3_store(m->diffuse_transmission_color,
              decoding_apply(b->decoding, KILN_TRANSFER_LINEAR, from->diffuse_transmission_color.value));
 }
-static bool is_layered(const world_material *m) {
-    return m->clearcoat > 0 || v3_max(v3_load(m->sheen)) > 0 || m->anisotropy > 0 || m->film > 0 ||
-           m->diffuse_transmission > 0;
+/* The kind whose kernel has all that the material calls for, and least besides. */
+static material_kind kind_of(const world_material *m) {
+    bool crosses = m->transmission > 0 || m->diffuse_transmission > 0, coated = m->clearcoat > 0 || m->anisotropy > 0;
+    if (m->film > 0) return KIND_FILMED;
+    if (v3_max(v3_load(m->sheen)) > 0 || m->diffuse_transmission > 0 || (coated && crosses)) return KIND_LAYERED;
+    if (coated) return KIND_COATED;
+    if (crosses) return KIND_TRANSMISSIVE;
+    return m->metallic > 0 || m->specular > 0 ? KIND_GLOSSY : KIND_DIFFUSE;
 }
 
 static void set_constants(const builder *b, world_material *m, const kiln_material *from) {
@@ -187,10 +192,7 @@ static void set_constants(const builder *b, world_material *m, const kiln_materi
                (from->alpha_mode == KILN_ALPHA_MASK ? MATERIAL_MASK : 0u) |
                (from->alpha_mode == KILN_ALPHA_BLEND ? MATERIAL_BLEND : 0u);
     if (unlit) m->metallic = 0.0f;
-    m->kind = is_layered(m)                              ? KIND_LAYERED
-              : m->transmission > 0                      ? KIND_TRANSMISSIVE
-              : m->metallic > 0 || m->specular > 0       ? KIND_GLOSSY
-                                                         : KIND_DIFFUSE;
+    m->kind = kind_of(m);
 }
 
 /* The colour that the texture of a slot multiplies. */

@@ -63,8 +63,16 @@ enum {
 };
 
 /* What the shading of a material can need: the kernels' instances. LAYERED has everything. */
-typedef enum material_kind { KIND_DIFFUSE, KIND_GLOSSY, KIND_TRANSMISSIVE, KIND_LAYERED,
-               KIND_MEDIUM, /* of points in media that scatter: no material */ KIND_COUNT } material_kind;
+typedef enum material_kind {
+    KIND_DIFFUSE,
+    KIND_GLOSSY,
+    KIND_COATED,       /* and a clear coat, anisotropy */
+    KIND_TRANSMISSIVE, /* from here on light may cross */
+    KIND_LAYERED,      /* all layers but films */
+    KIND_FILMED,
+    KIND_MEDIUM,       /* of points in media that scatter: no material */
+    KIND_COUNT
+} material_kind;
 
 typedef struct world_material {
     float base[3], opacity, metallic, roughness, normal_scale;

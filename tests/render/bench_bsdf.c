@@ -1,17 +1,20 @@
-/* Prints nanoseconds per lane of BSDFs, for every row of bsdf_cases.c: loops over 1,024 lanes, loaded and compiled as the
- * stages' are. Both columns prepare the point first (shading_make), as every stage does. Nothing is tested.
+/* Prints nanoseconds per lane of BSDFs: first lobe by lobe and layer by layer, each in a kernel of nothing else, then
+ * every row of bsdf_cases.c in the kernel that the stages run for it. Loops over 1,024 lanes, loaded and compiled as the
+ * stages' are; both columns prepare the point first (shading_make), as every stage does. Nothing is tested.
  *
- *     cmake --build build/release --target bench_bsdf && build/release/tests/bench_bsdf [ROUGHNESS] */
+ *     cmake --build build/release --target bench_bsdf && build/release/tests/bench_bsdf [ROUGHNESS [rows]] */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "base/arena.h"
+#include "render/bsdf/lobes/phase.h"
 #include "render/path/lanes.h"
 #include "tests/render/bsdf_cases.h"
 #include "tests/render/statistics.h"
 
-enum { BENCH_LANES = 1024, PASSES = 40, REPEATS = 9 };
+enum { BENCH_LANES = 1024, PASSES = 20, REPEATS = 15 };
 
 static void fill_surface(path_scratch *x, uint32_t i, const surface *s, float roughness) {
     x->base_r[i] = s->base.x, x->base_g[i] = s->base.y, x->base_b[i] = s->base.z;
@@ -73,14 +76,50 @@ KERNEL void sample(unsigned mask, batch *b) {
     }
 }
 
+/* Directions that a medium scatters to: value and density are one number. */
+static void __attribute__((noinline)) evaluate_medium(batch *b) {
+    path_state *s = batch_state(b);
+    LANE_LOOP (uint32_t i = 0; i < BENCH_LANES; i++)
+        s->pdf[i] = phase_value(v3(-s->dx[i], -s->dy[i], -s->dz[i]), v3(s->ox[i], s->oy[i], s->oz[i]), 0.5f);
+}
+static void __attribute__((noinline)) sample_medium(batch *b) {
+    path_state *s = batch_state(b);
+    path_scratch *x = &b->scratch;
+    LANE_LOOP (uint32_t i = 0; i < BENCH_LANES; i++) {
+        vec3 wo = {-s->dx[i], -s->dy[i], -s->dz[i]};
+        vec3 wi = phase_sample(wo, 0.5f, (vec2){x->u_bsdf_x[i], x->u_bsdf_y[i]});
+        x->px[i] = wi.x, x->py[i] = wi.y, x->pz[i] = wi.z;
+        s->pdf[i] = phase_value(wo, wi, 0.5f);
+    }
+}
+
+/* A layer's kernel, and the row that it is timed with. */
+#define LAYER_KERNELS(X)                                                                                               \
+    X(diffuse, "Lambert", SHADING_MASK_DIFFUSE, "lambert")                                                             \
+    X(glossy, "metal, coat and base", SHADING_MASK_GLOSSY, "coat 1.5")                                                 \
+    X(transmissive, "transmission", SHADING_MASK_TRANSMISSIVE, "glass 1.5")                                            \
+    X(clearcoat, "clear coat on glossy", SHADING_MASK_GLOSSY | BSDF_CLEARCOAT, "clearcoat on plastic")                 \
+    X(sheen, "sheen on glossy", SHADING_MASK_GLOSSY | BSDF_SHEEN, "narrow sheen on plastic")                           \
+    X(anisotropic, "anisotropy of glossy", SHADING_MASK_GLOSSY | BSDF_ANISOTROPIC, "anisotropic metal")                \
+    X(film, "film on glossy", SHADING_MASK_GLOSSY | BSDF_FILM, "film on plastic")                                      \
+    X(translucent, "diffuse transmission", SHADING_MASK_TRANSMISSIVE | BSDF_TRANSLUCENT, "leaf")
+/* The stages' further kernels. */
+#define STAGE_KERNELS(X)                                                                                               \
+    X(coated, "coated", SHADING_MASK_COATED, "clearcoat on plastic")                                                   \
+    X(layered, "layered", SHADING_MASK_LAYERED, "clearcoat on glass")                                                  \
+    X(filmed, "filmed", SHADING_MASK_FILMED, "all layers")
+
 typedef void kernel(batch *);
-#define INSTANCES(kind)                                                                                                \
-    static void __attribute__((noinline)) evaluate_##kind(batch *b) { evaluate(SHADING_MASK_##kind, b); }              \
-    static void __attribute__((noinline)) sample_##kind(batch *b) { sample(SHADING_MASK_##kind, b); }
-INSTANCES(DIFFUSE)
-INSTANCES(GLOSSY)
-INSTANCES(TRANSMISSIVE)
-INSTANCES(LAYERED)
+#define INSTANCE(id, text, mask, row)                                                                                  \
+    static void __attribute__((noinline)) evaluate_##id(batch *b) { evaluate(mask, b); }                               \
+    static void __attribute__((noinline)) sample_##id(batch *b) { sample(mask, b); }
+LAYER_KERNELS(INSTANCE)
+STAGE_KERNELS(INSTANCE)
+
+typedef struct instance { const char *text; unsigned mask; const char *row; kernel *evaluate, *sample; } instance;
+#define ENTRY(id, text, mask, row) {text, mask, row, evaluate_##id, sample_##id},
+static const instance instances[] = {LAYER_KERNELS(ENTRY) STAGE_KERNELS(ENTRY)};
+enum { INSTANCES = sizeof instances / sizeof *instances };
 
 static double now(void) {
     struct timespec t;
@@ -100,25 +139,26 @@ static double nanoseconds(kernel *k, batch *b) {
     return least;
 }
 
+static void print_row(const char *name, const instance *k, const bsdf_case *row, float roughness, batch *b) {
+    fill(b, row, roughness);
+    printf("%-28s %8.1f %7.1f\n", name, nanoseconds(k->evaluate, b), nanoseconds(k->sample, b));
+}
+
 int main(int argc, char **argv) {
     float roughness = argc > 1 ? strtof(argv[1], NULL) : 0.3f;
     batch *b = aligned_array(1, sizeof *b);
     if (!b) return 1;
     printf("roughness %g, %d lanes, least of %d\n%-28s evaluate  sample  ns per lane\n", (double)roughness, BENCH_LANES,
-           REPEATS, "material");
-    for (size_t c = 0; c < bsdf_case_count; c++) {
-        unsigned mask = bsdf_cases[c].mask;
-        kernel *e = mask == SHADING_MASK_DIFFUSE        ? evaluate_DIFFUSE
-                    : mask == SHADING_MASK_GLOSSY       ? evaluate_GLOSSY
-                    : mask == SHADING_MASK_TRANSMISSIVE ? evaluate_TRANSMISSIVE
-                                                        : evaluate_LAYERED;
-        kernel *s = mask == SHADING_MASK_DIFFUSE        ? sample_DIFFUSE
-                    : mask == SHADING_MASK_GLOSSY       ? sample_GLOSSY
-                    : mask == SHADING_MASK_TRANSMISSIVE ? sample_TRANSMISSIVE
-                                                        : sample_LAYERED;
-        fill(b, &bsdf_cases[c], roughness);
-        printf("%-28s %8.1f %7.1f\n", bsdf_cases[c].name, nanoseconds(e, b), nanoseconds(s, b));
-    }
+           REPEATS, "kernel");
+    for (int k = 0; k < INSTANCES; k++)
+        for (size_t c = 0; c < bsdf_case_count; c++)
+            if (!strcmp(bsdf_cases[c].name, instances[k].row))
+                print_row(instances[k].text, &instances[k], &bsdf_cases[c], roughness, b);
+    print_row("medium", &(instance){.evaluate = evaluate_medium, .sample = sample_medium}, bsdf_cases, roughness, b);
+    for (size_t c = 0; argc > 2 && c < bsdf_case_count; c++)
+        for (int k = 0; k < INSTANCES; k++)
+            if (instances[k].mask == bsdf_cases[c].mask)
+                print_row(bsdf_cases[c].name, &instances[k], &bsdf_cases[c], roughness, b);
     free(b);
     return 0;
 }

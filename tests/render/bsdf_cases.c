@@ -3,9 +3,12 @@
 #include <math.h>
 
 #include "base/fmath.h"
+#include "render/path/shading.h"
 #include "render/path/surface.h"
 
-enum { D = 0, G = BSDF_GLOSSY, T = BSDF_GLOSSY | BSDF_TRANSMISSIVE, L = T | BSDF_LAYERED };
+/* As render/world/materials.c sorts them into kinds. */
+enum { D = SHADING_MASK_DIFFUSE, G = SHADING_MASK_GLOSSY, C = SHADING_MASK_COATED, T = SHADING_MASK_TRANSMISSIVE,
+       L = SHADING_MASK_LAYERED, F = SHADING_MASK_FILMED };
 #define WHITE {1, 1, 1}
 #define BLACK {0, 0, 0}
 #define GOLD {1.0f, 0.71f, 0.29f}
@@ -51,40 +54,40 @@ const bsdf_case bsdf_cases[] = {
     {"everything", T, 0.3f, 0.8f, 1.6f, 0.6f, 0, 0, 0, GOLD, GOLD, NO_LAYERS},
     {"everything in", T, 0.3f, 0.8f, 1.6f, 0.6f, 0, 1, 0, GOLD, GOLD, NO_LAYERS},
     {"no layer", L, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
-    {"clearcoat on lambert", L, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1},
-    {"rough clearcoat on lambert", L, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.5f},
-    {"clearcoat on plastic", L, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.1f,
+    {"clearcoat on lambert", C, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1},
+    {"rough clearcoat on lambert", C, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.5f},
+    {"clearcoat on plastic", C, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.1f,
      .off_white = 0.02f},
-    {"half a clearcoat on metal", L, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 0.5f, .off_white = 0.03f},
-    {"clearcoat on gold", L, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.3f},
-    {"tilted clearcoat", L, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.6f,
+    {"half a clearcoat on metal", C, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 0.5f, .off_white = 0.03f},
+    {"clearcoat on gold", C, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.3f},
+    {"tilted clearcoat", C, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.6f,
      .clearcoat_tilt = 0.3f},
     {"clearcoat on glass", L, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.2f},
     {"clearcoat on glass, in", L, 0, 1, 1.5f, 1, 0, 1, 0, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.2f},
-    {"clearcoat on black", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.02f},
+    {"clearcoat on black", C, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.02f},
     {"sheen on lambert", L, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .sheen = WHITE, .sheen_roughness = 0.5f, .off_white = 0.02f},
     {"narrow sheen on plastic", L, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .sheen = GOLD, .sheen_roughness = 0.1f},
     {"sheen on black", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .sheen = GOLD, .sheen_roughness = 1},
     {"sheen of no roughness", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .sheen = WHITE, .sheen_roughness = 0, UNEVEN(5)},
-    {"half anisotropic metal", L, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 0.5f, .off_white = 0.1f},
-    {"anisotropic metal", L, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 1, .off_white = 0.3f},
-    {"anisotropic plastic", L, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .anisotropy = 0.7f, .off_white = 0.1f},
+    {"half anisotropic metal", C, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 0.5f, .off_white = 0.1f},
+    {"anisotropic metal", C, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 1, .off_white = 0.3f},
+    {"anisotropic plastic", C, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .anisotropy = 0.7f, .off_white = 0.1f},
     {"anisotropic glass", L, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .anisotropy = 0.6f, .off_white = 0.1f},
     {"anisotropic thin wall", L, 0, 1, 1.5f, 1, 1, 0, 0, WHITE, WHITE, .anisotropy = 0.6f, .off_white = 0.1f},
-    {"film on metal", L, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, .film = 1, .film_ior = 1.8f, .film_thickness = 400},
-    {"film on plastic", L, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 300,
+    {"film on metal", F, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, .film = 1, .film_ior = 1.8f, .film_thickness = 400},
+    {"film on plastic", F, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 300,
      .off_white = 0.15f},
-    {"film of no thickness", L, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .film = 1, .film_ior = 1.3f},
-    {"film on glass", L, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 500},
-    {"film on glass, in", L, 0, 1, 1.5f, 1, 0, 1, 0, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 500},
-    {"soap film", L, 0, 1, 1.0f, 1, 1, 0, 0, WHITE, WHITE, .film = 0.7f, .film_ior = 1.33f, .film_thickness = 800},
+    {"film of no thickness", F, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .film = 1, .film_ior = 1.3f},
+    {"film on glass", F, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 500},
+    {"film on glass, in", F, 0, 1, 1.5f, 1, 0, 1, 0, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 500},
+    {"soap film", F, 0, 1, 1.0f, 1, 1, 0, 0, WHITE, WHITE, .film = 0.7f, .film_ior = 1.33f, .film_thickness = 800},
     {"leaf", L, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .pass = 0.5f, .pass_color = WHITE},
     {"red lampshade", L, 0, 0, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .pass = 1, .pass_color = GOLD},
     {"wax", L, 0, 1, 1.4f, 0, 0, 0, 1, WHITE, WHITE, .pass = 0.8f, .pass_color = WHITE},
     {"wax, in, under clearcoat", L, 0, 1, 1.4f, 0, 0, 1, 0, WHITE, WHITE, .pass = 0.8f, .pass_color = WHITE, .clearcoat = 1},
     {"wax under clearcoat", L, 0, 1, 1.4f, 0, 0, 0, 0, WHITE, WHITE, .pass = 0.8f, .pass_color = WHITE, .clearcoat = 1},
-    {"all layers", L, 0.3f, 0.8f, 1.6f, 0.3f, 0, 0, 0, GOLD, GOLD, ALL_LAYERS},
-    {"all layers, in", L, 0.3f, 0.8f, 1.6f, 0.3f, 0, 1, 0, GOLD, GOLD, ALL_LAYERS},
+    {"all layers", F, 0.3f, 0.8f, 1.6f, 0.3f, 0, 0, 0, GOLD, GOLD, ALL_LAYERS},
+    {"all layers, in", F, 0.3f, 0.8f, 1.6f, 0.3f, 0, 1, 0, GOLD, GOLD, ALL_LAYERS},
 };
 
 const char *const bsdf_case_of_DIFFUSE = "lambert", *const bsdf_case_of_BELOW = "leaf",
@@ -108,8 +111,13 @@ void subject_make(subject *to, const bsdf_case *c) {
                             .diffuse_transmission = c->pass, .diffuse_transmission_color = c->pass_color};
 }
 
+/* The call with the mask as a constant. */
+#define BY_MASK(mask, call)                                                                                            \
+    ((mask) == D ? call(D) : (mask) == G ? call(G) : (mask) == C ? call(C) : (mask) == T ? call(T) : (mask) == L ? call(L) : call(F))
+
 static bsdf make(unsigned mask, const surface *s, vec3 wo) {
-    return mask == D ? bsdf_make(D, s, wo) : mask == G ? bsdf_make(G, s, wo) : mask == T ? bsdf_make(T, s, wo) : bsdf_make(L, s, wo);
+#define MAKE(m) bsdf_make(m, s, wo)
+    return BY_MASK(mask, MAKE);
 }
 
 probe probe_make(const subject *from, float roughness, vec3 wo) {
@@ -132,30 +140,24 @@ probe probe_reverse(const probe *from, vec3 wi) {
 }
 
 bsdf_value probe_evaluate(const probe *p, vec3 wi) {
-    return p->mask == D   ? bsdf_evaluate(D, &p->bsdf, wi)
-           : p->mask == G ? bsdf_evaluate(G, &p->bsdf, wi)
-           : p->mask == T ? bsdf_evaluate(T, &p->bsdf, wi)
-                          : bsdf_evaluate(L, &p->bsdf, wi);
+#define EVALUATE(m) bsdf_evaluate(m, &p->bsdf, wi)
+    return BY_MASK(p->mask, EVALUATE);
 }
 
 bsdf_sampled probe_sample(const probe *p, float lobe, vec2 direction) {
-    return p->mask == D   ? bsdf_sample(D, &p->bsdf, lobe, direction)
-           : p->mask == G ? bsdf_sample(G, &p->bsdf, lobe, direction)
-           : p->mask == T ? bsdf_sample(T, &p->bsdf, lobe, direction)
-                          : bsdf_sample(L, &p->bsdf, lobe, direction);
+#define SAMPLE(m) bsdf_sample(m, &p->bsdf, lobe, direction)
+    return BY_MASK(p->mask, SAMPLE);
 }
 
 vec3 probe_albedo(const probe *p) {
-    return p->mask == D   ? bsdf_albedo(D, &p->bsdf)
-           : p->mask == G ? bsdf_albedo(G, &p->bsdf)
-           : p->mask == T ? bsdf_albedo(T, &p->bsdf)
-                          : bsdf_albedo(L, &p->bsdf);
+#define ALBEDO(m) bsdf_albedo(m, &p->bsdf)
+    return BY_MASK(p->mask, ALBEDO);
 }
 
 float probe_narrowest(const probe *p) {
     float coat = p->bsdf.clearcoat.alpha, narrowest = 1;
     if (p->mask && !bsdf_is_mirror(p->bsdf.alphas.x)) narrowest = p->bsdf.alphas.y;
-    if (p->mask & BSDF_LAYERED && p->bsdf.clearcoat.near > 0 && !bsdf_is_mirror(coat)) narrowest = fminf(narrowest, coat);
+    if (p->mask & BSDF_CLEARCOAT && p->bsdf.clearcoat.near > 0 && !bsdf_is_mirror(coat)) narrowest = fminf(narrowest, coat);
     return narrowest;
 }
 

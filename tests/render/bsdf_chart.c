@@ -35,10 +35,10 @@ void chart_make(chart *c, const probe *p) {
     double y = glossy ? fmax((double)p->bsdf.alphas.y, least) : alpha;
     *c = (chart){.probe = p, .a2 = alpha * alpha, .stretch = y / alpha, .wo = to_double(p->bsdf.wo), .refracts = refracts, .mirrors = !solid || !interface,
                  .widths = {alpha * alpha, WIDE2, GRAZING2}, .width_count = 3};
-    if (p->mask & BSDF_LAYERED && p->bsdf.p_sheen > 0 && p->bsdf.p_glossy == 0 && p->bsdf.p_clearcoat == 0)
+    if (p->mask & BSDF_SHEEN && p->bsdf.p_sheen > 0 && p->bsdf.p_glossy == 0 && p->bsdf.p_clearcoat == 0)
         c->sheen = (double)(SHEEN_SPREAD * p->bsdf.sheen.roughness);
     float coat = p->bsdf.clearcoat.alpha;
-    if (p->mask & BSDF_LAYERED && p->bsdf.clearcoat.near > 0 && !bsdf_is_mirror(coat))
+    if (p->mask & BSDF_CLEARCOAT && p->bsdf.clearcoat.near > 0 && !bsdf_is_mirror(coat))
         c->widths[c->width_count++] = (double)coat * (double)coat;
     for (int row = 0; row < CHART_ROWS; row++) c->x[row] = tan2_of(c, (row + 0.5) / CHART_ROWS);
 }

@@ -269,7 +269,8 @@ static surface look_up(const path_context *c, hit *h, vec3 wo, vec3 *emission, v
         if (slot == SLOT_NORMAL) map = map_of(x, m->normal_scale);
         apply_layer(&s, m, slot, x, one, &along, &coat);
     }
-    bool coated = m->kind == KIND_LAYERED && w->slots & 1u << SLOT_CLEARCOAT_NORMAL;
+    bool layered = m->kind == KIND_COATED || m->kind == KIND_LAYERED || m->kind == KIND_FILMED;
+    bool coated = layered && w->slots & 1u << SLOT_CLEARCOAT_NORMAL;
     h->bumpy = map.x != 0.0f || map.y != 0.0f || coated;
     float sign;
     vec3 tangent = tangent_of(w, h, &sign);
@@ -324,10 +325,10 @@ static void emit(const path_context *c, path *p, const hit *h, vec3 emission) {
 }
 
 static unsigned mask_of(material_kind kind) {
-    return kind == KIND_DIFFUSE        ? SHADING_MASK_DIFFUSE
-           : kind == KIND_GLOSSY       ? SHADING_MASK_GLOSSY
-           : kind == KIND_TRANSMISSIVE ? SHADING_MASK_TRANSMISSIVE
-                                       : SHADING_MASK_LAYERED;
+#define MASK(kind) [KIND_##kind] = SHADING_MASK_##kind,
+    static const unsigned masks[KIND_COUNT] = {SHADING_KINDS(MASK)};
+#undef MASK
+    return masks[kind];
 }
 
 /* A light, a point on it, and the density of both. */

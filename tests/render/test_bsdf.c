@@ -124,7 +124,7 @@ static bool is_absorbed(const setting *s, const bsdf_sampled *r) {
 #define QUADRATURE_STREAK 1.5e-2
 
 static double quadrature_error(const chart *c) {
-    bool streak = c->refracts && c->stretch < 1, sheen = c->probe->mask & BSDF_LAYERED && c->probe->bsdf.p_sheen > 0;
+    bool streak = c->refracts && c->stretch < 1, sheen = c->probe->mask & BSDF_SHEEN && c->probe->bsdf.p_sheen > 0;
     return streak || (sheen && !(c->sheen > 0)) ? QUADRATURE_STREAK : QUADRATURE;
 }
 

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "render/bsdf/bsdf.h"
+#include "render/path/shading.h"
 #include "render/world/world.h"
 #include "tests/render/scenes.h"
 #include "tests/render/statistics.h"
@@ -70,7 +70,9 @@ static world *world_with(scene_builder *b, const kiln_material *materials, uint3
     return build_world(b);
 }
 
-static const unsigned masks[KIND_COUNT] = {0, BSDF_GLOSSY, BSDF_GLOSSY | BSDF_TRANSMISSIVE};
+#define MASK(kind) [KIND_##kind] = SHADING_MASK_##kind,
+static const unsigned masks[KIND_COUNT] = {SHADING_KINDS(MASK)};
+#undef MASK
 
 /* As the stages load it, without textures. */
 static surface surface_of(const world_material *m, bool outside) {
@@ -114,6 +116,42 @@ static void materials_become_lobes(void **state) {
     world *w = world_with(&b, materials, ROWS);
     for (int i = 0; i < ROWS; i++) check_row(&rows[i], &w->materials[i + 1]);
     assert_int_equal(w->kinds, 1u << KIND_DIFFUSE | 1u << KIND_GLOSSY | 1u << KIND_TRANSMISSIVE);
+    world_destroy(w);
+    builder_free(&b);
+}
+
+static kiln_material layered(uint32_t layers) {
+    kiln_material m = kiln_material_default();
+    m.layers = layers;
+    m.clearcoat.value = m.anisotropy.value = m.iridescence.value = m.diffuse_transmission.value = m.transmission.value = 1;
+    m.sheen_color.value[1] = 1;
+    return m;
+}
+
+/* A material goes to the kernel that has its layers, and least besides. */
+static void layers_choose_a_kind(void **state) {
+    (void)state;
+    static const struct { uint32_t layers; material_kind kind; } cases[] = {
+        {0, KIND_GLOSSY},
+        {KILN_LAYER_CLEARCOAT, KIND_COATED},
+        {KILN_LAYER_ANISOTROPY, KIND_COATED},
+        {KILN_LAYER_CLEARCOAT | KILN_LAYER_ANISOTROPY, KIND_COATED},
+        {KILN_LAYER_TRANSMISSION, KIND_TRANSMISSIVE},
+        {KILN_LAYER_CLEARCOAT | KILN_LAYER_TRANSMISSION, KIND_LAYERED},
+        {KILN_LAYER_ANISOTROPY | KILN_LAYER_TRANSMISSION, KIND_LAYERED},
+        {KILN_LAYER_SHEEN, KIND_LAYERED},
+        {KILN_LAYER_DIFFUSE_TRANSMISSION, KIND_LAYERED},
+        {KILN_LAYER_IRIDESCENCE, KIND_FILMED},
+        {KILN_LAYER_IRIDESCENCE | KILN_LAYER_CLEARCOAT | KILN_LAYER_SHEEN | KILN_LAYER_TRANSMISSION, KIND_FILMED},
+        {KILN_LAYER_IRIDESCENCE | KILN_LAYER_UNLIT, KIND_DIFFUSE},
+    };
+    enum { CASES = sizeof cases / sizeof *cases };
+    kiln_material materials[CASES];
+    for (int i = 0; i < CASES; i++) materials[i] = layered(cases[i].layers);
+    scene_builder b;
+    world *w = world_with(&b, materials, CASES);
+    for (int i = 0; i < CASES; i++)
+        if (w->materials[i + 1].kind != cases[i].kind) fail_msg("case %d: kind %d", i, w->materials[i + 1].kind);
     world_destroy(w);
     builder_free(&b);
 }
@@ -240,8 +278,9 @@ static void records_leave_out_what_is_not_asked_for(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(materials_become_lobes),     cmocka_unit_test(mirrors_have_a_threshold),
-        cmocka_unit_test(weights_stay_within_bounds), cmocka_unit_test(records_hold_physics),
+        cmocka_unit_test(materials_become_lobes),     cmocka_unit_test(layers_choose_a_kind),
+        cmocka_unit_test(mirrors_have_a_threshold),   cmocka_unit_test(weights_stay_within_bounds),
+        cmocka_unit_test(records_hold_physics),
         cmocka_unit_test(records_leave_out_what_is_not_asked_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
