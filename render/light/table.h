@@ -22,6 +22,7 @@ typedef struct light {
     float spot_scale, spot_offset; /* smooth edge: clamp(cos · scale + offset)² */
     float one_minus_cos;  /* DISTANT: of the half angle; 0: parallel */
     uint32_t varies;      /* TRIANGLE with an emission texture or partial coverage: 1 + its number; else 0 */
+    uint32_t medium;      /* TRIANGLE: of the solid that its surface bounds; 0: none */
     float error;          /* TRIANGLE: bound on the rounding error of a point on it */
     uint32_t owner;       /* TRIANGLE: its material; ENVIRONMENT: none; else the scene's light, by handle */
 } light;
@@ -46,6 +47,7 @@ typedef struct light_table {
     uint32_t count;
     uint32_t kinds;        /* bits of light_kind that occur */
     bool varied;           /* some triangle's emission varies */
+    bool bounds;           /* some triangle bounds a solid, and may be hidden */
     uint32_t *cdf[LIGHT_CHOICES], *guide[LIGHT_CHOICES]; /* NULL: nothing to choose from */
     uint32_t *distant;     /* the DISTANT ones with an angle: seen by rays that leave the scene */
     uint32_t distant_count;

@@ -39,7 +39,8 @@ enum {
 /* The cone of the path (cone.h): in scenes that filter textures, moved too. */
 #define PATH_CONE(X) X(float, width) X(float, spread)
 
-/* The same, where media scatter: how often they have. */
+/* The same, where there are solids: how many steps were no bounces off a surface: events in media that scatter, and
+ * boundaries that are hidden in another medium. */
 #define PATH_EVENTS(X) X(uint32_t, events)
 
 /* Where the ray has met a surface: moved with the path, once. Where the medium in front of it has scattered the path, t is
@@ -94,6 +95,7 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
     X(float, transmission) X(float, eta) X(float, thin)                                                                \
     X(float, hue_r) X(float, hue_g) X(float, hue_b) /* tints what passes: of the wavelength that the path takes on */  \
     X(uint64_t, beyond)                          /* stack of media behind the surface */                               \
+    X(uint32_t, hidden)                          /* 1: a boundary that is not there, within another medium */          \
     X(float, g)                                  /* mean cosine of the medium's scattering */                          \
     X(uint32_t, crosses)                         /* the next ray lies on the far side */                               \
     X(float, emit_r) X(float, emit_g) X(float, emit_b)                                                                 \
@@ -134,6 +136,14 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
     X(uint32_t, light) X(uint32_t, light_kind)                                                                         \
     X(uint32_t, row) X(uint32_t, column) X(float, across_texel) X(float, down_texel) /* environment_choice */
 
+/* Lanes in media that scatter, gathered: what their flights start with, and what comes of them. */
+#define FLIGHT_FIELDS(X)                                                                                               \
+    X(float, carried_r) X(float, carried_g) X(float, carried_b) /* throughput */                                       \
+    X(float, sigma_r) X(float, sigma_g) X(float, sigma_b) X(float, albedo_r) X(float, albedo_g) X(float, albedo_b)     \
+    X(uint32_t, flight_seed) X(uint32_t, flight_index)                                                                 \
+    X(float, limit) X(float, flown) X(float, scatters)                                                                 \
+    X(float, weight_r) X(float, weight_g) X(float, weight_b)
+
 /* Random numbers of a bounce. */
 #define RANDOM_FIELDS(X)                                                                                               \
     X(float, u_light_x) X(float, u_light_y) X(float, u_fine)                                                           \
@@ -145,8 +155,10 @@ typedef struct path_scratch {
     CONE_FIELDS(LANE_ARRAY)
     MATERIAL_FIELDS(LANE_ARRAY)
     LAYER_FIELDS(LANE_ARRAY)
-    LIGHT_FIELDS(LANE_ARRAY)
-    CHOSEN_FIELDS(LANE_ARRAY)
+    union { /* flights are over when light is sampled */
+        struct { LIGHT_FIELDS(LANE_ARRAY) CHOSEN_FIELDS(LANE_ARRAY) };
+        struct { FLIGHT_FIELDS(LANE_ARRAY) };
+    };
     RANDOM_FIELDS(LANE_ARRAY)
     LANE_ARRAY(float, tnear)
     LANE_ARRAY(float, tfar)

@@ -70,4 +70,10 @@ KERNEL medium_boundary medium_boundary_at(const world_medium *table, uint32_t me
     return (medium_boundary){medium_ior(&table[far], wavelength) / medium_ior(&table[near], wavelength), near == far};
 }
 
+/* Is a boundary of `medium` hidden from who looks at its front, or at its back, out of the stack `media`? */
+KERNEL int medium_hides(const world_medium *table, uint32_t medium, uint64_t media, int front) {
+    uint64_t beyond = medium_cross(media, medium, front);
+    return medium != 0 && medium_boundary_at(table, medium, media, beyond, front, WAVELENGTH_D).hidden;
+}
+
 #endif

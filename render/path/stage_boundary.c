@@ -2,9 +2,11 @@
 #include "render/path/medium.h"
 #include "render/path/stages.h"
 
-/* A boundary inside of a medium that outranks its own is not there: as a perfectly clear interface without a bend it
- * needs no case of its own in what follows. Light samples see a delta, so emission beyond it counts in full. */
+/* A boundary inside of a medium that outranks its own is not there: as a perfectly clear and dark interface without a
+ * bend it needs no case of its own in what follows, but that it is no bounce. Light samples see a delta, so emission
+ * beyond it counts in full. */
 static void hide(path_scratch *x, uint32_t i) {
+    x->emit_r[i] = x->emit_g[i] = x->emit_b[i] = 0.0f;
     x->base_r[i] = x->base_g[i] = x->base_b[i] = 1.0f;
     x->metallic[i] = x->roughness[i] = x->f0[i] = 0.0f;
     x->transmission[i] = 1.0f;
@@ -31,6 +33,7 @@ static void bound(const path_context *c, const path_state *s, path_scratch *x, u
     medium_boundary at =
         medium_boundary_at(w->media, m->medium, s->media[i], x->beyond[i], entering, line.wavelength);
     set_eta(x, i, m, at.eta);
+    x->hidden[i] = (uint32_t)at.hidden;
     if (at.hidden) hide(x, i);
     else if (w->spectrum) set_hue(w, s, x, i, &line);
 }
@@ -43,6 +46,7 @@ void STAGE(boundary)(const path_context *c, batch *b) {
     for (uint32_t i = 0; i < b->surfaces; i++) {
         const world_material *m = &w->materials[x->material[i]];
         uint64_t media = s->media[i];
+        x->hidden[i] = 0;
         x->beyond[i] = w->touches ? h->beyond[i] : medium_cross(media, m->medium, x->front[i] > 0.5f);
         if (m->medium) bound(c, s, x, i, m);
         else if (media && m->kind != KIND_DIFFUSE) set_eta(x, i, m, m->eta / w->media[medium_top(media)].ior);

@@ -57,5 +57,5 @@ void STAGE(camera)(const path_context *c, const path_sample *samples, uint32_t c
         s->media[i] = media;
     }
     disperse(c, b);
-    for (uint32_t i = 0; c->world->scatters && i < b->n; i++) s->events[i] = 0;
+    for (uint32_t i = 0; c->world->media_count > 1 && i < b->n; i++) s->events[i] = 0;
 }

@@ -2,8 +2,7 @@
 #include "render/path/medium.h"
 #include "render/path/stages.h"
 
-/* Lanes in media that scatter, and which of them scatter before the surface. They are gathered in arrays that the light
- * sample will need only later. */
+/* Lanes in media that scatter, and which of them scatter before the surface. */
 void STAGE(flight)(const path_context *c, batch *b) {
     const world *w = c->world;
     path_state *s = batch_state(b);
@@ -15,29 +14,30 @@ void STAGE(flight)(const path_context *c, batch *b) {
         /* Where the ray leaves the scene the mesh is open, and the medium takes nothing. */
         if (!w->media[medium].scatters || h->triangle[i] >= TRIANGLE_REFUSED) continue;
         ray_crossing met = {h->triangle[i], h->instance[i], h->t[i], h->u[i], h->v[i]};
-        x->tfar[count] = flight_limit(w, v3(s->ox[i], s->oy[i], s->oz[i]), v3(s->dx[i], s->dy[i], s->dz[i]), &met);
-        x->rr[count] = s->tr[i], x->rg[count] = s->tg[i], x->rb[count] = s->tb[i];
-        x->light[count] = s->seed[i], x->light_kind[count] = s->index[i];
+        x->limit[count] = flight_limit(w, v3(s->ox[i], s->oy[i], s->oz[i]), v3(s->dx[i], s->dy[i], s->dz[i]), &met);
+        x->carried_r[count] = s->tr[i], x->carried_g[count] = s->tg[i], x->carried_b[count] = s->tb[i];
+        x->flight_seed[count] = s->seed[i], x->flight_index[count] = s->index[i];
         const float *sigma = w->extinction + 3 * (size_t)medium, *albedo = w->albedo + 3 * (size_t)medium;
-        x->e1x[count] = sigma[0], x->e1y[count] = sigma[1], x->e1z[count] = sigma[2];
-        x->e2x[count] = albedo[0], x->e2y[count] = albedo[1], x->e2z[count] = albedo[2];
+        x->sigma_r[count] = sigma[0], x->sigma_g[count] = sigma[1], x->sigma_b[count] = sigma[2];
+        x->albedo_r[count] = albedo[0], x->albedo_g[count] = albedo[1], x->albedo_b[count] = albedo[2];
         x->list[count++] = i;
     }
     int independent = c->independent;
     LANE_LOOP (uint32_t k = 0; k < count; k++) {
-        vec2 u = sample_pair(independent, (sample_point){x->light_kind[k], x->light[k]}, SAMPLE_FLIGHT, depth);
-        vec3 throughput = {x->rr[k], x->rg[k], x->rb[k]};
-        vec3 extinction = {x->e1x[k], x->e1y[k], x->e1z[k]}, albedo = {x->e2x[k], x->e2y[k], x->e2z[k]};
-        flight f = flight_sample(extinction, albedo, throughput, x->tfar[k], u.x, u.y);
-        x->distance[k] = f.distance;
-        x->u_fine[k] = f.scatters ? 1.0f : 0.0f;
-        x->cr[k] = f.weight.x, x->cg[k] = f.weight.y, x->cb[k] = f.weight.z;
+        vec2 u = sample_pair(independent, (sample_point){x->flight_index[k], x->flight_seed[k]}, SAMPLE_FLIGHT, depth);
+        vec3 throughput = {x->carried_r[k], x->carried_g[k], x->carried_b[k]};
+        vec3 extinction = {x->sigma_r[k], x->sigma_g[k], x->sigma_b[k]};
+        vec3 albedo = {x->albedo_r[k], x->albedo_g[k], x->albedo_b[k]};
+        flight f = flight_sample(extinction, albedo, throughput, x->limit[k], u.x, u.y);
+        x->flown[k] = f.distance;
+        x->scatters[k] = f.scatters ? 1.0f : 0.0f;
+        x->weight_r[k] = f.weight.x, x->weight_g[k] = f.weight.y, x->weight_b[k] = f.weight.z;
     }
     for (uint32_t k = 0; k < count; k++) {
         uint32_t i = x->list[k];
-        s->tr[i] *= x->cr[k], s->tg[i] *= x->cg[k], s->tb[i] *= x->cb[k];
-        if (x->u_fine[k] < 0.5f) continue;
-        h->t[i] = x->distance[k];
+        s->tr[i] *= x->weight_r[k], s->tg[i] *= x->weight_g[k], s->tb[i] *= x->weight_b[k];
+        if (x->scatters[k] < 0.5f) continue;
+        h->t[i] = x->flown[k];
         h->u[i] = HIT_SCATTERED;
     }
 }

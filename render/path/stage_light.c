@@ -1,4 +1,5 @@
 #include "render/light/light.h"
+#include "render/path/medium.h"
 #include "render/path/stages.h"
 #include "render/world/lookup.h"
 
@@ -70,6 +71,21 @@ static void vary_emission(const world *w, batch *b) {
     }
 }
 
+/* Boundaries of solids that are hidden in another medium do not shine. Nothing lies between, so the light is looked at
+ * from the medium on its side of the point. */
+static void hide_emission(const world *w, batch *b) {
+    const path_state *s = batch_state(b);
+    path_scratch *x = &b->scratch;
+    for (uint32_t i = 0; i < b->n; i++) {
+        uint32_t medium = w->lights.lights[x->light[i]].medium;
+        if (!medium) continue;
+        vec3 wi = {x->wx[i], x->wy[i], x->wz[i]}, n = {x->plane_x[i], x->plane_y[i], x->plane_z[i]};
+        uint64_t media = v3_dot(wi, n) < 0.0f ? x->beyond[i] : s->media[i];
+        int front = v3_dot(wi, v3(x->ax[i], x->ay[i], x->az[i])) < 0.0f;
+        if (medium_hides(w->media, medium, media, front)) x->cr[i] = x->cg[i] = x->cb[i] = 0.0f;
+    }
+}
+
 void STAGE(light)(const path_context *c, batch *b) {
     const light_table *t = &c->world->lights;
     choose(c, b);
@@ -79,4 +95,5 @@ void STAGE(light)(const path_context *c, batch *b) {
     else if (t->kinds == KIND(LIGHT_ENVIRONMENT)) sample(KIND(LIGHT_ENVIRONMENT), b);
     else sample(KIND(LIGHT_KINDS) - 1, b);
     if (t->varied) vary_emission(c->world, b);
+    if (t->bounds) hide_emission(c->world, b);
 }

@@ -9,13 +9,14 @@ static void start_probe(batch *b, uint32_t i) {
     s->lr[i] = s->lg[i] = s->lb[i] = 0.0f;
 }
 
-/* How far past the limit a path is: bounces off surfaces, or events in media, of which there may be more. */
+/* How far past the limit a path is: bounces off surfaces, or other steps, of which there may be more. */
 static int32_t excess(const path_context *c, const batch *b, uint32_t i) {
-    if (!c->world->scatters) return (int32_t)(b->depth - c->max_depth);
-    const path_state *s = &b->states[b->current];
-    int32_t events = (int32_t)s->events[i] - MEDIUM_EVENTS_MAX;
-    int32_t bounces = i < b->surfaces ? (int32_t)(b->depth - s->events[i]) - (int32_t)c->max_depth : -1;
-    return bounces > events ? bounces : events;
+    if (c->world->media_count <= 1) return (int32_t)(b->depth - c->max_depth);
+    bool met = i < b->surfaces;
+    int32_t events = (int32_t)(b->states[b->current].events[i] + (met ? b->scratch.hidden[i] : 0u));
+    int32_t bounces = met ? (int32_t)b->depth - events - (int32_t)c->max_depth : -1;
+    int32_t others = events - MEDIUM_EVENTS_MAX;
+    return bounces > others ? bounces : others;
 }
 
 bool STAGE(limit)(const path_context *c, batch *b) {

@@ -33,7 +33,7 @@ static void cross_media(const world *w, batch *b) {
     path_state *s = batch_state(b);
     const path_scratch *x = &b->scratch;
     for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_FILMED].end; i++)
-        if (x->crosses[i]) s->media[i] = x->beyond[i];
+        if (x->crosses[i]) s->media[i] = x->beyond[i], s->events[i] += x->hidden[i];
     for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; w->spectrum && i < b->kinds[KIND_FILMED].end; i++)
         if (w->media[medium_top(s->media[i])].spread > 0.0f) s->slot[i] |= SLOT_DISPERSED;
 }

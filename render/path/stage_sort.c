@@ -18,12 +18,10 @@ static void move(const world *w, batch *b, uint32_t count, bool with_hits) {
     PATH_STATE(MOVE_STATE)
     if (w->media_count > 1) {
         PATH_MEDIA(MOVE_STATE)
+        PATH_EVENTS(MOVE_STATE)
     }
     if (w->filters) {
         PATH_CONE(MOVE_STATE)
-    }
-    if (w->scatters) {
-        PATH_EVENTS(MOVE_STATE)
     }
     if (with_hits) {
         PATH_HIT(MOVE_HIT)

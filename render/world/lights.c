@@ -91,6 +91,7 @@ static light triangle_light(const world *w, const world_instance *copy, uint32_t
     float reach = copy->magnitude;
     light l = {.kind = LIGHT_TRIANGLE, .radiance = v3_load(m->emission),
                .owner = w->triangle_material[triangle], .varies = lookup_emission_varies(w, triangle) ? triangle + 1 : 0,
+               .medium = m->medium,
                .two_sided = m->flags & MATERIAL_TWO_SIDED ? 1.0f : 0.0f};
     for (int k = 0; k < 3; k++) {
         p[k] = world_instance_point(copy, v3_load(w->vertices[v[k]].p));

@@ -11,7 +11,10 @@ static void note_emission(world *w) {
         const world_material *m = &w->materials[i];
         w->emits |= m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0;
     }
-    for (uint32_t i = 0; i < w->lights.count; i++) w->lights.varied |= w->lights.lights[i].varies != 0;
+    for (uint32_t i = 0; i < w->lights.count; i++) {
+        w->lights.varied |= w->lights.lights[i].varies != 0;
+        w->lights.bounds |= w->lights.lights[i].medium != 0;
+    }
 }
 
 static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decoding, kiln_texture_filter filter,

@@ -17,7 +17,7 @@ typedef struct path {
     bool dispersed; /* it has a wavelength */
     cone cone;
     uint64_t media;
-    uint32_t depth, events; /* bounces; those of them that were in a medium */
+    uint32_t depth, events; /* bounces; those of them that were in a medium, or no surface was there */
 } path;
 
 typedef struct hit {
@@ -283,7 +283,7 @@ static surface look_up(const path_context *c, hit *h, vec3 wo, vec3 *emission, v
 static float normal_reflectance(const world_material *m, float eta) { return m->f0 < 1.0f ? fresnel_normal(eta) : 1.0f; }
 
 /* What the media on both sides make of it. */
-static void bound(const path_context *c, const path *p, const hit *h, surface *s) {
+static void bound(const path_context *c, path *p, const hit *h, surface *s, vec3 *emission) {
     const world *w = c->world;
     const world_material *m = h->material;
     if (m->medium) {
@@ -297,6 +297,8 @@ static void bound(const path_context *c, const path *p, const hit *h, surface *s
         s->eta = at.eta;
         s->f0 = normal_reflectance(m, at.eta);
         if (!at.hidden) return;
+        p->events++;
+        *emission = v3_splat(0);
         s->base = s->through = v3_splat(1);
         s->metallic = s->roughness = s->f0 = 0;
         s->transmission = 1;
@@ -331,8 +333,9 @@ static unsigned mask_of(material_kind kind) {
     return masks[kind];
 }
 
-/* A light, a point on it, and the density of both. */
-static light_sampled draw_light(const path_context *c, const path *p, vec3 position, float *density) {
+/* A light, a point on it, and the density of both. plane: what parts the media of the path and those beyond. */
+static light_sampled draw_light(const path_context *c, const path *p, vec3 position, vec3 plane, uint64_t beyond,
+                                float *density) {
     const light_table *t = &c->world->lights;
     vec2 place = draw(c, p, SAMPLE_LIGHT);
     float rest, fine = draw(c, p, SAMPLE_LIGHT_FINE).x;
@@ -342,6 +345,8 @@ static light_sampled draw_light(const path_context *c, const path *p, vec3 posit
     if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, place, fine, &l);
     light_sampled r = light_sample(KIND(LIGHT_KINDS) - 1, &l, position, place);
     if (l.varies) r.radiance = v3_mul(r.radiance, lookup_emission(c->world, l.varies - 1, warp_triangle(place)));
+    uint64_t media = v3_dot(r.wi, plane) < 0.0f ? beyond : p->media;
+    if (medium_hides(c->world->media, l.medium, media, v3_dot(r.wi, l.axis) < 0.0f)) r.radiance = v3_splat(0);
     *density = r.pdf * distribution_probability(c->light_cdf, k);
     return r;
 }
@@ -363,7 +368,7 @@ static void reach(const path_context *c, path *p, const shading_connection *n, u
 /* Next-event estimation. */
 static void connect(const path_context *c, path *p, const hit *h, const shading *s, unsigned mask) {
     float density;
-    light_sampled r = draw_light(c, p, s->sides.above, &density);
+    light_sampled r = draw_light(c, p, s->sides.above, s->sides.normal, h->beyond, &density);
     shading_connection n = shading_connect(mask, s, c->estimator, p->throughput, &r, density);
     reach(c, p, &n, medium_top(v3_dot(r.wi, s->sides.normal) < 0.0f ? h->beyond : p->media), r.distance);
 }
@@ -388,7 +393,7 @@ static bool scatter_in_medium(const path_context *c, path *p, float distance) {
     uint32_t medium = medium_top(p->media);
     float g = c->world->media[medium].g, density;
     if (c->light_cdf) {
-        light_sampled r = draw_light(c, p, position, &density);
+        light_sampled r = draw_light(c, p, position, v3_splat(0), p->media, &density);
         vec3 to = v3_sub(r.target, position);
         bool placed = r.distance < INFINITY;
         float length = v3_length(to);
@@ -447,7 +452,7 @@ static shading arrive(const path_context *c, path *p, hit *h) {
         p->throughput = v3_mul(p->throughput, medium_transmittance(c->world->absorption, medium_top(p->media), h->p.hit.t));
     vec3 wo = v3_neg(p->direction), normal = h->p.shading, emission;
     surface s = look_up(c, h, wo, &emission, &normal);
-    bound(c, p, h, &s);
+    bound(c, p, h, &s, &emission);
     if (c->world->emits) emit(c, p, h, emission);
     return shading_make(mask_of(h->material->kind), &s, h->sides, h->p.geometric, normal, wo);
 }

@@ -217,11 +217,51 @@ static void camera_in_nested_media(void **state) {
     builder_free(&b);
 }
 
+/* Boundaries inside of glass that outranks them are no bounces: with as many as the slab needs, all light is seen that
+ * passes without a reflection. */
+static void hidden_boundaries_are_no_bounces(void **state) {
+    (void)state;
+    scene_builder b = builder_make();
+    kiln_id glass = add_solid(&b, 1.5f, 1), hidden = add_solid(&b, 1.33f, 0);
+    add_slab(&b, glass, 0, 1, 2);
+    for (int i = 0; i < 3; i++) add_slab(&b, hidden, 0.1f + 0.3f * (float)i, 0.2f + 0.3f * (float)i, 1.5f);
+    light_from_below(&b);
+    kiln_camera view = camera_at((float[]){0.013f, 5, 0.017f}, (float[]){0.013f, 0, 0.017f}, 0.5);
+    kiln_render_options o = {.spp = 1024, .seed = 3, .background = KILN_BACKGROUND_ENVIRONMENT, .max_depth = 2};
+    picture p = render(&b, &view, &o, 8, 8);
+    double expected = pow(1 - normal_reflectance(1, 1.5), 2);
+    if (fabs(p.mean - expected) > 4 * p.mean_error + 1e-4)
+        fail_msg("%.5f ± %.5f passes, not %.5f", p.mean, p.mean_error, expected);
+    picture_free(&p);
+    builder_free(&b);
+}
+
+/* A lamp within clear glass, and a wall beside it: where the glass outranks the lamp's, the lamp is not there, neither
+ * to what meets it nor to light samples. */
+static void hidden_boundaries_are_dark(void **state) {
+    (void)state;
+    for (int priority = 0; priority < 2; priority++)
+        for (int e = 0; e < 3; e++) {
+            scene_builder b = builder_make();
+            kiln_material lamp = solid(1.33f), wall = diffuse_material(0.8f, 0.8f, 0.8f);
+            for (int k = 0; k < 3; k++) lamp.emission.value[k] = 5;
+            add_sphere(&b, add_solid(&b, 1.5f, priority), (float[]){0, 0, 0}, 1, 32, 0);
+            add_sphere(&b, add_material(&b, &lamp), (float[]){.3f, 0, 0}, .2f, 16, 0);
+            add_box(&b, add_material(&b, &wall), (float[]){-.5f, -.4f, -.4f}, (float[]){-.3f, .4f, .4f});
+            kiln_camera view = camera_at((float[]){0, 0, 4}, (float[]){0, 0, 0}, 35);
+            picture p = render(&b, &view, &(kiln_render_options){.spp = 16, .estimator = (kiln_estimator)e}, 16, 16);
+            if ((p.mean == 0) != (priority == 1)) fail_msg("priority %d, estimator %d: %g", priority, e, p.mean);
+            picture_free(&p);
+            builder_free(&b);
+        }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(liquid_in_glass),    cmocka_unit_test(pieces_and_bubbles),
         cmocka_unit_test(coats_are_relative), cmocka_unit_test(equal_glass_is_invisible),
         cmocka_unit_test(camera_in_glass),    cmocka_unit_test(camera_in_nested_media),
+        cmocka_unit_test(hidden_boundaries_are_no_bounces), cmocka_unit_test(hidden_boundaries_are_dark),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
