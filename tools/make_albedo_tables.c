@@ -69,7 +69,7 @@ static double albedo(what w, double mu, double alpha, double eta) {
     return sum / N;
 }
 
-/* cos θ at a coordinate t: the inverse of albedo_cosine_node's, bisected. */
+/* cos θ at a coordinate t: the inverse of albedo_cosine_at, bisected. */
 static double cosine_at(double t, double alpha) {
     double low = 0, high = 1, share = (double)ALBEDO_COSINE_SHARE;
     for (int i = 0; i < 60; i++) {
@@ -89,11 +89,21 @@ static double schlick_relative(double mu, double alpha) {
 /* As the table holds it: losses must be those of the very entries. */
 static double rounded(double value) { return round(value * 1e5) * 1e-5; }
 
-static void put(double value) {
-    static int column;
-    printf("%s%.5ff,%s", column % 12 ? " " : "    ", value, column % 12 == 11 ? "\n" : "");
-    column++;
+static int printed; /* of the numbers of a table */
+static void begin(const char *declaration) {
+    printf("\n%s = {\n", declaration);
+    printed = 0;
 }
+static void put(double value) {
+    printf("%s%.5ff,", printed % 12 ? " " : printed ? "\n    " : "    ", value);
+    printed++;
+}
+/* Mean losses need digits of their own, however small they are. */
+static void put_loss(double value) {
+    printf("%s%.6ef,", printed % 8 ? " " : printed ? "\n    " : "    ", value);
+    printed++;
+}
+static void end(void) { printf("\n};\n"); }
 
 /* 2 ∫ E(mu) mu dmu over one row of nodes, E linear in t as the look-up has it; times Schlick's share, unless that row is
  * NULL. By midpoints. */
@@ -114,19 +124,19 @@ static double mean_of_row(const double *row, const double *schlick, double alpha
     return sum;
 }
 
-/* What a table of losses holds at a finer row j: 1 less the mean of look-ups between the rows of E, over alpha². Row 0
- * is that of the first roughness above 0, under which lobes are mirrors. */
+/* What a table of losses holds at a finer row j: 1 less the mean of look-ups between the rows of E, over roughness. Row 0
+ * is that of the first roughness above 0: under 0.01 lobes are mirrors. */
 static double relative_loss(double rows[][ALBEDO_COSINES], int j) {
     double at = (double)(j > 0 ? j : 1) / ALBEDO_FINER, r = at / (ALBEDO_ROUGHNESS - 1), between[ALBEDO_COSINES];
     int low = at < ALBEDO_ROUGHNESS - 2 ? (int)at : ALBEDO_ROUGHNESS - 2;
     for (int i = 0; i < ALBEDO_COSINES; i++) between[i] = rows[low][i] + (at - low) * (rows[low + 1][i] - rows[low][i]);
-    return (1 - mean_of_row(between, NULL, r * r)) / pow(r, 4);
+    return (1 - mean_of_row(between, NULL, r * r)) / r;
 }
 
 static void print_reflection(void) {
     double full[ALBEDO_ROUGHNESS][ALBEDO_COSINES], schlick[ALBEDO_ROUGHNESS][ALBEDO_COSINES];
     double schlick_mean[ALBEDO_ROUGHNESS];
-    printf("const float albedo_full_table[ALBEDO_SLICE] = {\n");
+    begin("const float albedo_full_table[ALBEDO_SLICE]");
     for (int j = 0; j < ALBEDO_ROUGHNESS; j++) {
         double a = albedo_row_alpha(j);
         for (int i = 0; i < ALBEDO_COSINES; i++) {
@@ -135,14 +145,17 @@ static void print_reflection(void) {
         }
         schlick_mean[j] = mean_of_row(full[j], schlick[j], a);
     }
-    printf("};\n\nconst float albedo_full_loss_table[ALBEDO_LOSSES] = {\n");
-    for (int j = 0; j < ALBEDO_LOSSES; j++) put(relative_loss(full, j));
-    printf("};\n\nconst float albedo_schlick_table[ALBEDO_SLICE] = {\n");
+    end();
+    begin("const float albedo_full_loss_table[ALBEDO_LOSSES]");
+    for (int j = 0; j < ALBEDO_LOSSES; j++) put_loss(relative_loss(full, j));
+    end();
+    begin("const float albedo_schlick_table[ALBEDO_SLICE]");
     for (int j = 0; j < ALBEDO_ROUGHNESS; j++)
         for (int i = 0; i < ALBEDO_COSINES; i++) put(schlick[j][i]);
-    printf("};\n\nconst float albedo_schlick_mean_table[ALBEDO_ROUGHNESS] = {\n");
+    end();
+    begin("const float albedo_schlick_mean_table[ALBEDO_ROUGHNESS]");
     for (int j = 0; j < ALBEDO_ROUGHNESS; j++) put(schlick_mean[j]);
-    printf("};\n\n");
+    end();
 }
 
 /* η of a slice of the interface table. */
@@ -153,17 +166,18 @@ static double slice_eta(int k) {
 
 static void print_interface(void) {
     static double rows[ALBEDO_IORS][ALBEDO_ROUGHNESS][ALBEDO_COSINES];
-    printf("const float albedo_interface_table[ALBEDO_SLICE * ALBEDO_IORS] = {\n");
+    begin("const float albedo_interface_table[ALBEDO_SLICE * ALBEDO_IORS]");
     for (int k = 0; k < ALBEDO_IORS; k++)
         for (int j = 0; j < ALBEDO_ROUGHNESS; j++) {
             double a = albedo_row_alpha(j);
             for (int i = 0; i < ALBEDO_COSINES; i++)
                 put(rows[k][j][i] = rounded(albedo(INTERFACE, column_mu(i, a), a, slice_eta(k))));
         }
-    printf("};\n\nconst float albedo_interface_loss_table[ALBEDO_LOSSES * ALBEDO_IORS] = {\n");
+    end();
+    begin("const float albedo_interface_loss_table[ALBEDO_LOSSES * ALBEDO_IORS]");
     for (int k = 0; k < ALBEDO_IORS; k++)
-        for (int j = 0; j < ALBEDO_LOSSES; j++) put(relative_loss(rows[k], j));
-    printf("};\n");
+        for (int j = 0; j < ALBEDO_LOSSES; j++) put_loss(relative_loss(rows[k], j));
+    end();
 }
 
 /* lobes/sheen.h in double; l(x) and Λ of KHR_materials_sheen. */
@@ -201,7 +215,7 @@ static double sheen_mu(double t, double roughness) {
 
 static void print_sheen(void) {
     double mean[ALBEDO_SHEEN_ROUGHNESS];
-    printf("\nconst float albedo_sheen_table[ALBEDO_SHEEN * ALBEDO_SHEEN_ROUGHNESS] = {\n");
+    begin("const float albedo_sheen_table[ALBEDO_SHEEN * ALBEDO_SHEEN_ROUGHNESS]");
     for (int j = 0; j < ALBEDO_SHEEN_ROUGHNESS; j++) {
         enum { N = 256 };
         double roughness = sheen_row_roughness(j), before = 0;
@@ -214,13 +228,14 @@ static void print_sheen(void) {
             before = mu;
         }
     }
-    printf("};\n\nconst float albedo_sheen_mean_table[ALBEDO_SHEEN_ROUGHNESS] = {\n");
+    end();
+    begin("const float albedo_sheen_mean_table[ALBEDO_SHEEN_ROUGHNESS]");
     for (int j = 0; j < ALBEDO_SHEEN_ROUGHNESS; j++) put(mean[j]);
-    printf("};\n");
+    end();
 }
 
 int main(void) {
-    printf("/* Printed by tools/make_albedo_tables.c. */\n#include \"render/bsdf/albedo.h\"\n\n");
+    printf("/* Printed by tools/make_albedo_tables.c. */\n#include \"render/bsdf/albedo.h\"\n");
     print_reflection();
     print_interface();
     print_sheen();

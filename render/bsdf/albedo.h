@@ -14,13 +14,14 @@
 
 enum { ALBEDO_COSINES = 32, ALBEDO_ROUGHNESS = 20, ALBEDO_IORS = 64 };
 enum { ALBEDO_SLICE = ALBEDO_COSINES * ALBEDO_ROUGHNESS };
-enum { ALBEDO_FINER = 4, ALBEDO_LOSSES = (ALBEDO_ROUGHNESS - 1) * ALBEDO_FINER + 1 }; /* rows of losses */
+enum { ALBEDO_FINER = 8, ALBEDO_LOSSES = (ALBEDO_ROUGHNESS - 1) * ALBEDO_FINER + 1 }; /* rows of losses */
 #define ALBEDO_COSINE_SHARE 0.3f /* of cos θ in t */
 /* Slices of the interface table stand at x = ±ALBEDO_X_MAX k², x = (η − 1)/(η + 1): denser where η is near 1. */
 #define ALBEDO_X_MAX 0.9f
 
-/* With F = 1: what one scattering event returns; t by roughness. And 1 less its mean, over alpha², for that hardly varies:
- * near grazing a nearly smooth surface loses percents that its mean loss of 10⁻⁵ must still scale. */
+/* With F = 1: what one scattering event returns; t by roughness. And 1 less its mean, over roughness, for under the first
+ * row above 0 that hardly varies: near grazing a nearly smooth surface loses percents that its mean loss of 10⁻⁵ must
+ * still scale. */
 extern const float albedo_full_table[ALBEDO_SLICE];
 extern const float albedo_full_loss_table[ALBEDO_LOSSES];
 /* The share of it that goes with Schlick's (1 − cos)^5, as the one cosine c that has this share, over cos θ + alpha: that
@@ -60,34 +61,37 @@ KERNEL float albedo_linear(const float *table, albedo_node node) {
     return table[node.index] + node.fraction * (table[node.index + 1] - table[node.index]);
 }
 
-/* Where mu = cos θ ≥ 0 lies among the columns. */
-KERNEL albedo_node albedo_cosine_node(float mu, float alpha) {
+/* The coordinate of mu = cos θ ≥ 0, in [0, 1]. */
+KERNEL float albedo_cosine_at(float mu, float alpha) {
     float grazing = sqrtf(mu * (1.0f + alpha) / (mu + alpha + 1e-30f)); /* alpha 0 at mu 0 */
-    return albedo_node_of((1.0f - ALBEDO_COSINE_SHARE) * grazing + ALBEDO_COSINE_SHARE * mu, ALBEDO_COSINES);
+    return (1.0f - ALBEDO_COSINE_SHARE) * grazing + ALBEDO_COSINE_SHARE * mu;
+}
+KERNEL albedo_node albedo_cosine_node(float mu, float alpha) {
+    return albedo_node_of(albedo_cosine_at(mu, alpha), ALBEDO_COSINES);
 }
 
 /* One row of a material's roughness serves all look-ups of a shading point. */
 KERNEL albedo_node albedo_roughness_node(float roughness) { return albedo_node_of(roughness, ALBEDO_ROUGHNESS); }
 
 /* Mean losses bend more between rows than what they are the means of: their rows are finer. */
-typedef struct albedo_loss { albedo_node row; float alpha2; } albedo_loss; /* alpha² */
+typedef struct albedo_loss { albedo_node row; float roughness; } albedo_loss;
 KERNEL albedo_loss albedo_loss_of(albedo_node roughness) {
-    float r = ((float)roughness.index + roughness.fraction) * (1.0f / (ALBEDO_ROUGHNESS - 1)), alpha = r * r;
-    return (albedo_loss){albedo_node_of(r, ALBEDO_LOSSES), alpha * alpha};
+    float r = ((float)roughness.index + roughness.fraction) * (1.0f / (ALBEDO_ROUGHNESS - 1));
+    return (albedo_loss){albedo_node_of(r, ALBEDO_LOSSES), r};
 }
 
 KERNEL float albedo_full(float mu, float alpha, albedo_node roughness) {
     return albedo_bilinear(albedo_full_table, ALBEDO_COSINES, albedo_cosine_node(mu, alpha), roughness);
 }
-KERNEL float albedo_full_mean(albedo_node roughness) {
+KERNEL float albedo_full_mean_loss(albedo_node roughness) {
     albedo_loss l = albedo_loss_of(roughness);
-    return 1.0f - l.alpha2 * albedo_linear(albedo_full_loss_table, l.row);
+    return l.roughness * albedo_linear(albedo_full_loss_table, l.row);
 }
 
-KERNEL float albedo_schlick_share(float mu, float alpha, albedo_node roughness) {
+/* The cosine at which Schlick's weight is its share. */
+KERNEL float albedo_schlick_cosine(float mu, float alpha, albedo_node roughness) {
     float relative = albedo_bilinear(albedo_schlick_table, ALBEDO_COSINES, albedo_cosine_node(mu, alpha), roughness);
-    float m = 1.0f - relative * (mu + alpha), m2 = m * m;
-    return m2 * m2 * m;
+    return relative * (mu + alpha);
 }
 KERNEL float albedo_schlick_mean(albedo_node roughness) {
     return albedo_linear(albedo_schlick_mean_table, roughness);
@@ -106,9 +110,9 @@ KERNEL float albedo_interface(albedo_node ior, float mu, float alpha, albedo_nod
     column.index += ALBEDO_SLICE;
     return low + ior.fraction * (albedo_bilinear(albedo_interface_table, ALBEDO_COSINES, column, roughness) - low);
 }
-KERNEL float albedo_interface_mean(albedo_node ior, albedo_node roughness) {
+KERNEL float albedo_interface_mean_loss(albedo_node ior, albedo_node roughness) {
     albedo_loss l = albedo_loss_of(roughness);
-    return 1.0f - l.alpha2 * albedo_bilinear(albedo_interface_loss_table, ALBEDO_LOSSES, l.row, ior);
+    return l.roughness * albedo_bilinear(albedo_interface_loss_table, ALBEDO_LOSSES, l.row, ior);
 }
 
 /* Of a white sheen lobe (lobes/sheen.h). Rows of roughness k/25 have one at each end and one at the kink,

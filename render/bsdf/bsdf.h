@@ -1,7 +1,9 @@
-/* render/bsdf/bsdf.h: the BSDF of a surface: six lobes, composed by layer.
+/* render/bsdf/bsdf.h: the BSDF of a surface: seven lobes, composed by layer.
  *
- *   DIFFUSE       cosine, wo's side: the base under its coat, and what microfacets reflect more than once
- *   BELOW         cosine, far side: diffuse transmission, and what an interface passes on after more than one event
+ *   DIFFUSE       cosine, wo's side: the base under its coat
+ *   BELOW         cosine, far side: diffuse transmission
+ *   GRAZING       either side: what microfacets reflect or pass on after more than one event; an interface's half as
+ *                 DIFFUSE and BELOW, for it also loses light about its critical angle
  *   REFLECTION    GGX, or a mirror under GGX_ALPHA_MIN: metal and dielectric together, for they share their roughness
  *   TRANSMISSION  GGX, or a delta: refraction at a solid, straight on through a thin wall
  *   CLEARCOAT     GGX, or a mirror, around a normal of its own
@@ -18,18 +20,21 @@
 #include "render/bsdf/compensation.h"
 #include "render/bsdf/lobes/diffuse.h"
 
-/* Anisotropy after KHR_materials_anisotropy: the alpha along x grows, the one along y is the material's. Tables know one
- * alpha: the root of the mean square. */
+/* Anisotropy after KHR_materials_anisotropy: the alpha along x grows, the one along y is the material's. Isotropic
+ * tables are asked for the root of the mean square. */
 KERNEL void bsdf_make_roughness(unsigned mask, bsdf *b, const surface *s) {
     b->alpha = s->roughness * s->roughness;
     b->alphas = (vec2){b->alpha, b->alpha};
     b->roughness = albedo_roughness_node(s->roughness);
-    b->isotropy = 1.0f;
+    b->grazing = grazing_make(fm_max(b->alpha, GGX_ALPHA_MIN));
+    b->from_inside = 1.0f;
     if (!(mask & BSDF_ANISOTROPIC)) return;
     b->alphas.x = fm_lerp(b->alpha, 1.0f, s->anisotropy * s->anisotropy);
-    b->isotropy = 1.0f - 0.4f * (1.0f - (b->alphas.y + 1e-20f) / (b->alphas.x + 1e-20f)); /* no white metal above 1 */
+    b->brushed = anisotropy_make(b->alphas.x, b->alphas.y);
+    b->from_inside = sqrtf(b->brushed.stretch);
     b->alpha = sqrtf(0.5f * (b->alphas.x * b->alphas.x + b->alpha * b->alpha));
     b->roughness = albedo_roughness_node(sqrtf(b->alpha));
+    b->grazing = grazing_make(fm_max(b->alpha, GGX_ALPHA_MIN));
 }
 
 KERNEL void bsdf_make_fresnel(unsigned mask, bsdf *b, const surface *s, float opaque) {
@@ -48,9 +53,12 @@ KERNEL void bsdf_make_fresnel(unsigned mask, bsdf *b, const surface *s, float op
     b->far_ior = albedo_ior_node(1.0f / s->eta); /* η ≥ 1/1000 */
 }
 
-/* Selection weights, by what the lobes return; w_diffuse and w_below are known. Visible microfacets face wo more than a
- * surface does that is seen from the side, and less than one that is seen from above. */
-KERNEL void bsdf_make_weights(unsigned mask, bsdf *b, float w_diffuse, float w_below) {
+/* What the wide lobes return to either side, and how much of that goes by GRAZING's density. */
+typedef struct bsdf_wide { float up, below, grazing, grazing_below; } bsdf_wide;
+
+/* Selection weights, by what the lobes return. Visible microfacets face wo more than a surface does that is seen from the
+ * side, and less than one that is seen from above. */
+KERNEL void bsdf_make_weights(unsigned mask, bsdf *b, bsdf_wide w) {
     int straight = mask & BSDF_TRANSMISSIVE && bsdf_is_straight(b);
     bsdf_facet mean = bsdf_facet_at(mask, b, b->wo.z + (straight ? 0.0f : b->alpha * (0.5f - b->wo.z)));
     float w_glossy = average(mean.reflects), sum = 0.0f;
@@ -63,10 +71,12 @@ KERNEL void bsdf_make_weights(unsigned mask, bsdf *b, float w_diffuse, float w_b
     if (mask & BSDF_CLEARCOAT) b->p_clearcoat = l->near * clearcoat_fresnel(l->wo.z * (1.0f - 0.5f * l->alpha));
     if (mask & BSDF_SHEEN) b->p_sheen = average(b->sheen.color) * l->through * albedo_sheen(b->wo.z, b->sheen.node);
     sum = b->p_clearcoat + b->p_sheen;
-    sum = sum + w_diffuse + w_below + w_glossy;
+    sum = sum + w.up + w.below + w_glossy;
     float scale = sum > 0.0f ? 1.0f / sum : 0.0f;
-    b->p_diffuse = w_diffuse * scale;
-    b->p_below = w_below * scale;
+    b->p_diffuse = w.up * scale;
+    b->p_below = w.below * scale;
+    b->p_grazing = w.grazing * scale;
+    b->p_grazing_below = w.grazing_below * scale;
     b->p_glossy = w_glossy * scale;
     b->p_clearcoat *= scale;
     b->p_sheen *= scale;
@@ -80,20 +90,24 @@ KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo) {
     bsdf_make_roughness(mask, &b, s);
     bsdf_make_fresnel(mask, &b, s, opaque);
     layers_make(mask, &b, s);
-    float mu = bsdf_table_mu(mask, &b, wo), full = bsdf_full(mu, b.alpha, b.roughness);
-    float full_mean = albedo_full_mean(b.roughness), through = b.clearcoat.through * b.sheen.through;
-    layers_means means = mask & BSDF_COVERED ? layers_mean(mask, &b) : bsdf_plain_means(&b, full_mean);
-    bsdf_up_down base = bsdf_make_base(mask, &b, s, opaque, mu, full, &means, through);
-    vec3 metal = bsdf_make_metal(&b, s, full, full_mean, &means, through), up = v3_add(base.up, metal);
-    b.wide = v3_add(up, base.down);
-    float w_diffuse = average(up), w_below = average(base.down);
+    bsdf_seen seen = bsdf_see(mask, &b, wo);
+    float mean_loss = albedo_full_mean_loss(b.roughness), through = b.clearcoat.through * b.sheen.through;
+    if (mask & BSDF_ANISOTROPIC) mean_loss *= anisotropy_mean(b.alphas.x, b.brushed.stretch);
+    int by_sum = (mask & (BSDF_COVERED | BSDF_ANISOTROPIC)) != 0;
+    layers_means means = by_sum ? layers_mean(mask, &b) : bsdf_plain_means(&b, mean_loss);
+    bsdf_up_down base = bsdf_make_base(mask, &b, s, opaque, &seen, &means, through);
+    vec3 metal = bsdf_make_metal(&b, s, seen.lost, mean_loss, &means, through);
+    b.wide = v3_add(v3_add(base.up, metal), base.down);
+    bsdf_wide w = {.up = average(base.up), .below = average(base.down), .grazing = average(metal)};
     if (mask & BSDF_TRANSMISSIVE) {
-        bsdf_up_down again = bsdf_make_interface(mask, &b, mu, full, full_mean);
-        w_diffuse += through * average(again.up);
-        w_below += through * average(again.down);
+        bsdf_up_down again = bsdf_make_interface(mask, &b, &seen, mean_loss);
+        float up = 0.5f * through * average(again.up), below = 0.5f * through * average(again.down);
+        w = (bsdf_wide){w.up + up, w.below + below, w.grazing + up, below};
         b.wide = v3_madd(b.wide, through, v3_add(again.up, again.down));
     }
-    bsdf_make_weights(mask, &b, w_diffuse, w_below);
+    w.up += w.grazing;
+    w.below += w.grazing_below;
+    bsdf_make_weights(mask, &b, w);
     return b;
 }
 
@@ -101,14 +115,14 @@ KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo) {
  * microfacets face wo, and so is the film's. */
 KERNEL vec3 bsdf_albedo(unsigned mask, const bsdf *b) {
     if (!(mask & BSDF_GLOSSY)) return b->wide;
-    float mu = bsdf_table_mu(mask, b, b->wo), full = bsdf_full(mu, b->alpha, b->roughness);
-    float share = bsdf_schlick_share(mu, b->alpha, b->roughness), facing = b->wo.z + b->alpha * (1.0f - b->wo.z);
-    vec3 sum = v3_madd(b->reflect0, share, b->reflect1);
-    if (mask & BSDF_FILM) sum = bsdf_filmed(b, bsdf_mean_cosine(share), sum);
-    sum = v3_scale(sum, full);
+    bsdf_seen seen = bsdf_see(mask, b, b->wo);
+    float facing = b->wo.z + b->alpha * (1.0f - b->wo.z);
+    vec3 sum = v3_madd(b->reflect0, fresnel_schlick_weight(seen.cosine), b->reflect1);
+    if (mask & BSDF_FILM) sum = bsdf_filmed(b, seen.cosine, sum);
+    sum = v3_scale(sum, seen.full);
     if (mask & BSDF_TRANSMISSIVE) {
         vec3 f = bsdf_interface_fresnel(mask, b, facing), passes = v3_mul(b->tint, complement(f));
-        float kept = 1.0f - bsdf_interface_loss(b, b->near_ior, mu, full);
+        float kept = 1.0f - bsdf_interface_loss(b, b->near_ior, &seen);
         sum = v3_madd(sum, kept, v3_madd(passes, b->interface, f));
     }
     sum = v3_scale(sum, b->sheen.through);
@@ -124,10 +138,10 @@ typedef struct bsdf_value { vec3 value; float pdf; } bsdf_value;
 typedef struct bsdf_toward {
     vec3 wi, mirrored;
     int up;
-    float cosine;   /* |cos θ|/π */
-    float mu, full; /* bsdf_table_mu and bsdf_full there */
+    float cosine; /* |cos θ|/π */
+    bsdf_seen seen;
     layers_pass in;
-    float under;    /* layers_under of light of one event */
+    float under;  /* layers_under of light of one event */
 } bsdf_toward;
 
 KERNEL bsdf_toward bsdf_look(unsigned mask, const bsdf *b, vec3 wi) {
@@ -136,8 +150,7 @@ KERNEL bsdf_toward bsdf_look(unsigned mask, const bsdf *b, vec3 wi) {
     if (mask & BSDF_TRANSMISSIVE) t.mirrored.z = fabsf(wi.z);
     t.cosine = diffuse_pdf(wi, mask & BSDF_TRANSMISSIVE && !t.up ? -1.0f : 1.0f);
     if (!(mask & BSDF_GLOSSY)) return t;
-    t.mu = bsdf_table_mu(mask, b, t.mirrored);
-    t.full = bsdf_full(t.mu, b->alpha, b->roughness);
+    t.seen = bsdf_see(mask, b, t.mirrored);
     if (mask & BSDF_COVERED) {
         t.in = layers_toward(mask, b, t.mirrored, !t.up);
         t.under = layers_under(b, t.in);
@@ -145,24 +158,26 @@ KERNEL bsdf_toward bsdf_look(unsigned mask, const bsdf *b, vec3 wi) {
     return t;
 }
 
-/* DIFFUSE and BELOW. */
+/* DIFFUSE, BELOW and GRAZING. */
 KERNEL bsdf_value bsdf_evaluate_wide(unsigned mask, const bsdf *b, const bsdf_toward *t) {
     if (!(mask & BSDF_GLOSSY)) return (bsdf_value){v3_scale(b->diffuse, t->cosine), b->p_diffuse * t->cosine};
-    vec3 enters = complement(bsdf_coat_albedo(mask, b, t->mu, t->full));
-    vec3 value = v3_madd(v3_mul(b->diffuse, enters), 1.0f - t->full, b->metal_again);
-    float pdf = b->p_diffuse;
+    vec3 enters = complement(bsdf_coat_albedo(mask, b, &t->seen));
+    vec3 value = v3_madd(v3_mul(b->diffuse, enters), t->seen.lost, b->metal_again);
+    float p = b->p_diffuse, grazing = b->p_grazing;
     vec3 passes = mask & BSDF_TRANSLUCENT ? v3_mul(b->passes, enters) : v3_splat(0.0f);
     if (mask & BSDF_TRANSMISSIVE) value = v3_select(t->up, value, passes);
     value = v3_scale(value, t->in.clearcoat * t->in.sheen);
     if (mask & BSDF_TRANSMISSIVE) {
         albedo_node ior = {t->up ? b->near_ior.index : b->far_ior.index,
                            t->up ? b->near_ior.fraction : b->far_ior.fraction};
-        float again = t->under * bsdf_interface_loss(b, ior, t->mu, t->full);
+        float again = t->under * bsdf_interface_loss(b, ior, &t->seen);
         vec3 share = v3_select(t->up, v3_splat(b->again_near), v3_scale(b->tint, b->again_far));
         value = v3_madd(value, again, share);
-        pdf = t->up ? b->p_diffuse : b->p_below;
+        p = t->up ? p : b->p_below;
+        grazing = t->up ? grazing : b->p_grazing_below;
     }
-    return (bsdf_value){v3_scale(value, t->cosine), pdf * t->cosine};
+    float pdf = (p - grazing) * t->cosine + grazing * grazing_pdf(b->grazing, t->mirrored.z);
+    return (bsdf_value){v3_scale(value, t->cosine), pdf};
 }
 
 /* REFLECTION and TRANSMISSION: a microfacet is chosen first, then what it does. A thin wall passes light on as it would
@@ -222,15 +237,16 @@ typedef struct bsdf_sampled {
     int crosses;     /* wi lies on the far side */
 } bsdf_sampled;
 
-/* Which lobe a number in [0, 1) chooses: flags of 0 and 1, one of them 1 but for black surfaces. p_reflects: of the
+/* Which lobe a number in [0, 1) chooses: flags of 0 and 1; DIFFUSE where none is 1, or GRAZING. p_reflects: of the
  * microfacet that glossy lobes meet, not to let light pass. */
-typedef struct bsdf_choice { int below, clearcoat, sheen, reflect, transmit; } bsdf_choice;
+typedef struct bsdf_choice { int grazing, below, clearcoat, sheen, reflect, transmit; } bsdf_choice;
 
 KERNEL bsdf_choice bsdf_choose(unsigned mask, const bsdf *b, float lobe, float p_reflects) {
     float from = b->p_diffuse;
-    bsdf_choice c = {0};
+    bsdf_choice c = {.grazing = lobe < b->p_grazing};
     if (mask & BSDF_TRANSMISSIVE) {
         c.below = (lobe >= from) & (lobe < from + b->p_below);
+        c.grazing = c.grazing | (c.below & (lobe < from + b->p_grazing_below));
         from += b->p_below;
     }
     if (mask & BSDF_CLEARCOAT) {
@@ -306,6 +322,7 @@ KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 d
 
     bsdf_facet_sampled met = bsdf_sample_facet(mask, b, direction);
     bsdf_choice chosen = bsdf_choose(mask, b, lobe, 1.0f - met.facet.p_passes);
+    wi = v3_select(chosen.grazing, grazing_sample(b->grazing, direction), wi);
     int possible = 1, hangs = 0;
     if (mask & BSDF_TRANSMISSIVE) {
         wi.z = chosen.below ? -wi.z : wi.z;

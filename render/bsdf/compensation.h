@@ -7,35 +7,38 @@
 
 #include "render/bsdf/layers.h"
 
-/* What an interface loses to multiple scattering, seen from mu; thin walls lose what a mirror would, and what goes
- * straight on loses nothing. */
-KERNEL float bsdf_interface_loss(const bsdf *b, albedo_node ior, float mu, float full) {
-    float e = fm_lerp(albedo_interface(ior, mu, b->alpha, b->roughness), full, b->thin);
-    return (1.0f - e) * (bsdf_is_straight(b) ? 0.0f : 1.0f);
+/* What an interface loses to multiple scattering, seen so; thin walls lose what a mirror would, and what goes straight on
+ * loses nothing. Of anisotropic boundaries of solids there are no tables: where microfacets face w less than those of the
+ * isotropic surface which is looked up, they reflect more and lose less; from inside, less again. Rather too little is
+ * given back than too much. */
+KERNEL float bsdf_interface_loss(const bsdf *b, albedo_node ior, const bsdf_seen *seen) {
+    float solid = (1.0f - albedo_interface(ior, seen->mu, b->alpha, b->roughness)) * seen->interface;
+    float lost = fm_lerp(ior.index < ALBEDO_IORS / 2 - 1 ? solid * b->from_inside : solid, seen->lost, b->thin);
+    return lost * (bsdf_is_straight(b) ? 0.0f : 1.0f);
 }
-KERNEL float bsdf_interface_mean_loss(const bsdf *b, albedo_node ior, float full_mean) {
-    float e = fm_lerp(albedo_interface_mean(ior, b->roughness), full_mean, b->thin);
-    return fm_max(1.0f - e, BSDF_LEAST_LOSS);
+KERNEL float bsdf_interface_mean_loss(const bsdf *b, albedo_node ior, float full_mean_loss) {
+    return fm_max(fm_lerp(albedo_interface_mean_loss(ior, b->roughness), full_mean_loss, b->thin), BSDF_LEAST_MEAN);
 }
 
 /* Shares of light that a lobe over a hemisphere sends up and down. */
 typedef struct bsdf_up_down { vec3 up, down; } bsdf_up_down;
 
 KERNEL vec3 bsdf_divide(vec3 a, vec3 mean) {
-    return v3(a.x / fm_max(mean.x, BSDF_LEAST_LOSS), a.y / fm_max(mean.y, BSDF_LEAST_LOSS), a.z / fm_max(mean.z, BSDF_LEAST_LOSS));
+    return v3(a.x / fm_max(mean.x, BSDF_LEAST_MEAN), a.y / fm_max(mean.y, BSDF_LEAST_MEAN),
+              a.z / fm_max(mean.z, BSDF_LEAST_MEAN));
 }
 
 /* What a coat without layers lets in, and what nothing dims of multiple scattering. */
-KERNEL layers_means bsdf_plain_means(const bsdf *b, float full_mean) {
-    vec3 enters = complement(v3_madd(v3_scale(b->f0, full_mean), albedo_schlick_mean(b->roughness),
+KERNEL layers_means bsdf_plain_means(const bsdf *b, float full_mean_loss) {
+    vec3 enters = complement(v3_madd(v3_scale(b->f0, 1.0f - full_mean_loss), albedo_schlick_mean(b->roughness),
                                      v3_sub(v3_splat(b->f90), b->f0)));
     return (layers_means){enters, enters, 1.0f};
 }
 
 /* The base under its coat, and under layers. means, through: theirs, the latter at wo. */
-KERNEL bsdf_up_down bsdf_make_base(unsigned mask, bsdf *b, const surface *s, float opaque, float mu, float full,
+KERNEL bsdf_up_down bsdf_make_base(unsigned mask, bsdf *b, const surface *s, float opaque, const bsdf_seen *seen,
                                   const layers_means *means, float through) {
-    vec3 enters = v3_scale(complement(bsdf_coat_albedo(mask, b, mu, full)), opaque * through);
+    vec3 enters = v3_scale(complement(bsdf_coat_albedo(mask, b, seen)), opaque * through);
     if (!(mask & BSDF_TRANSLUCENT)) {
         enters = v3_mul(enters, s->base);
         b->diffuse = bsdf_divide(enters, means->near);
@@ -55,26 +58,25 @@ KERNEL bsdf_up_down bsdf_make_base(unsigned mask, bsdf *b, const surface *s, flo
 }
 
 /* F_ms = F² E/(1 − F (1 − E)) of the mean Fresnel term F = (20 F0 + 1)/21 and the mean albedo E. */
-KERNEL vec3 bsdf_make_metal(bsdf *b, const surface *s, float full, float full_mean,
+KERNEL vec3 bsdf_make_metal(bsdf *b, const surface *s, float lost_here, float full_mean_loss,
                             const layers_means *means, float through) {
-    vec3 f = v3_madd(v3_splat(1.0f / 21.0f), 20.0f / 21.0f, s->base), lost = v3_scale(f, 1.0f - full_mean);
+    float full_mean = 1.0f - full_mean_loss;
+    vec3 f = v3_madd(v3_splat(1.0f / 21.0f), 20.0f / 21.0f, s->base), lost = v3_scale(f, full_mean_loss);
     vec3 again = v3(f.x * f.x * full_mean / (1.0f - lost.x), f.y * f.y * full_mean / (1.0f - lost.y),
                     f.z * f.z * full_mean / (1.0f - lost.z));
-    again = v3_scale(again, s->metallic * (1.0f - full));
-    again = v3_scale(again, through * b->isotropy);
-    b->metal_again = v3_scale(again, 1.0f / fm_max(1.0f - full_mean, BSDF_LEAST_LOSS));
-    b->metal_again = v3_scale(b->metal_again, 1.0f / fm_max(means->again, BSDF_LEAST_LOSS));
+    again = v3_scale(again, s->metallic * lost_here * through);
+    b->metal_again = v3_scale(again, 1.0f / fm_max(full_mean_loss, BSDF_LEAST_MEAN));
+    b->metal_again = v3_scale(b->metal_again, 1.0f / fm_max(means->again, BSDF_LEAST_MEAN));
     return again;
 }
 
 /* What the interface loses is shared out so that as much crosses from either side: (1 − κ_a) n_a² M_a is symmetric. */
-KERNEL bsdf_up_down bsdf_make_interface(unsigned mask, bsdf *b, float mu, float full, float full_mean) {
-    float loss = bsdf_interface_loss(b, b->near_ior, mu, full);
+KERNEL bsdf_up_down bsdf_make_interface(unsigned mask, bsdf *b, const bsdf_seen *seen, float full_mean_loss) {
+    float loss = bsdf_interface_loss(b, b->near_ior, seen);
     /* Tables know no films: rather too little than too much. */
-    loss *= b->isotropy;
     if (mask & BSDF_FILM) loss *= 1.0f - 0.25f * b->film.share;
-    float near_mean = bsdf_interface_mean_loss(b, b->near_ior, full_mean);
-    float far_mean = bsdf_interface_mean_loss(b, b->far_ior, full_mean);
+    float near_mean = bsdf_interface_mean_loss(b, b->near_ior, full_mean_loss);
+    float far_mean = bsdf_interface_mean_loss(b, b->far_ior, full_mean_loss);
     float eta2 = b->thin > 0.5f ? 1.0f : b->eta * b->eta;
     float pass = eta2 * far_mean / (near_mean + eta2 * far_mean);
     float reflected = (1.0f - pass) * loss, passed = pass * loss;

@@ -18,8 +18,7 @@ KERNEL float clearcoat_fresnel(float c) { return CLEARCOAT_F0 + (1.0f - CLEARCOA
 
 /* What a coat of share 1 reflects in all, seen from a cosine to its normal. */
 KERNEL float clearcoat_albedo(const bsdf_clearcoat *l, float mu) {
-    float share = bsdf_schlick_share(mu, l->alpha, l->roughness);
-    return bsdf_full(mu, l->alpha, l->roughness) * (CLEARCOAT_F0 + (1.0f - CLEARCOAT_F0) * share);
+    return bsdf_full(mu, l->alpha, l->roughness) * clearcoat_fresnel(bsdf_mean_cosine(mu, l->alpha, l->roughness));
 }
 
 /* What goes through clear coat and sheen together, along a direction on wo's side or, mirrored, on the far one. */
@@ -116,13 +115,14 @@ KERNEL void layers_make(unsigned mask, bsdf *b, const surface *s) {
 typedef struct layers_means { vec3 near, far; float again; } layers_means;
 
 KERNEL void layers_add_mean(unsigned mask, const bsdf *b, float mu, float weight, layers_means *sum, float *again_weight) {
-    float full = bsdf_full(mu, b->alpha, b->roughness);
-    vec3 enters = complement(bsdf_coat_albedo(mask, b, mu, full));
+    float side = sqrtf(0.5f * (1.0f - mu * mu)); /* an azimuth of π/4 stands for all */
+    bsdf_seen seen = bsdf_see(mask, b, v3(side, side, mu));
+    vec3 enters = complement(bsdf_coat_albedo(mask, b, &seen));
     layers_pass near = layers_through(mask, b, mu, mu, 0), far = layers_through(mask, b, mu, mu, 1);
     float through = near.clearcoat * near.sheen;
     sum->near = v3_madd(sum->near, weight * through, enters);
     sum->far = v3_madd(sum->far, weight * far.clearcoat * far.sheen, enters);
-    float lost = weight * (1.0f - full) + 1e-9f; /* a mirror loses nothing: then the mean is plain */
+    float lost = weight * seen.lost + 1e-9f; /* a mirror loses nothing: then the mean is plain */
     sum->again += lost * through;
     *again_weight += lost;
 }

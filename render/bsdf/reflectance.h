@@ -60,31 +60,37 @@ KERNEL bsdf_facet bsdf_facet_at(unsigned mask, const bsdf *b, float c) {
 KERNEL float bsdf_full(float mu, float alpha, albedo_node roughness) {
     return fm_lerp(albedo_full(mu, alpha, roughness), 1.0f, bsdf_is_mirror(alpha) ? 1.0f : 0.0f);
 }
-/* The mean of Schlick's (1 − cos)^5 over what is reflected, seen from mu. */
-KERNEL float bsdf_schlick_share(float mu, float alpha, albedo_node roughness) {
-    return fm_lerp(albedo_schlick_share(mu, alpha, roughness), fresnel_schlick_weight(mu), bsdf_is_mirror(alpha) ? 1.0f : 0.0f);
+/* The cosine at which Schlick's weight is its mean over what is reflected, seen from mu: about there other Fresnel terms
+ * are taken for their mean. */
+KERNEL float bsdf_mean_cosine(float mu, float alpha, albedo_node roughness) {
+    return fm_lerp(albedo_schlick_cosine(mu, alpha, roughness), mu, bsdf_is_mirror(alpha) ? 1.0f : 0.0f);
 }
 
-/* The cosine that tables are asked for. Anisotropic ones see w from where an isotropic surface of the larger alpha would
- * throw shadows as long. */
-KERNEL float bsdf_table_mu(unsigned mask, const bsdf *b, vec3 w) {
-    if (!(mask & BSDF_ANISOTROPIC)) return w.z;
-    float y = w.y * (b->alphas.y + 1e-20f) / (b->alphas.x + 1e-20f);
-    return fm_min(w.z / sqrtf(w.z * w.z + w.x * w.x + y * y), 1.0f); /* |w| = 1, and x or z is not 0 */
+/* What tables say of a direction: the cosine that they were asked for, what the microfacets of a white metal send on in
+ * one event and what they do not, and the mean cosine; interface: what anisotropy leaves of an interface's loss. */
+typedef struct bsdf_seen { float mu, full, lost, cosine, interface; } bsdf_seen;
+
+/* w.z ≥ 0 */
+KERNEL bsdf_seen bsdf_see(unsigned mask, const bsdf *b, vec3 w) {
+    if (!(mask & BSDF_ANISOTROPIC)) {
+        float full = bsdf_full(w.z, b->alpha, b->roughness);
+        return (bsdf_seen){w.z, full, 1.0f - full, bsdf_mean_cosine(w.z, b->alpha, b->roughness), 1.0f};
+    }
+    anisotropy_direction d = anisotropy_stretch(w, b->brushed.stretch);
+    anisotropy_factors factors = anisotropy_look_up(anisotropy_table, &b->brushed, d, b->alphas.x);
+    float lost = factors.loss * (1.0f - bsdf_full(d.mu, b->alpha, b->roughness));
+    float faces = factors.cosine * d.length, cosine = faces * bsdf_mean_cosine(d.mu, b->alpha, b->roughness);
+    return (bsdf_seen){d.mu, 1.0f - lost, lost, cosine, fm_min(faces, 1.0f)};
 }
 
-/* Where Schlick's weight is its mean: about there other Fresnel terms are taken for their mean. */
-KERNEL float bsdf_mean_cosine(float share) { return 1.0f - fm_pow(share, 0.2f); }
-
-/* What the dielectric's coat reflects in all, seen from mu: full is bsdf_full there. */
-KERNEL vec3 bsdf_coat_albedo(unsigned mask, const bsdf *b, float mu, float full) {
-    float share = bsdf_schlick_share(mu, b->alpha, b->roughness);
-    vec3 f = v3_madd(b->f0, share, v3_sub(v3_splat(b->f90), b->f0));
+/* What the dielectric's coat reflects in all. */
+KERNEL vec3 bsdf_coat_albedo(unsigned mask, const bsdf *b, const bsdf_seen *seen) {
+    vec3 f = v3_madd(b->f0, fresnel_schlick_weight(seen->cosine), v3_sub(v3_splat(b->f90), b->f0));
     if (mask & BSDF_FILM) {
-        thin_film t = bsdf_film_at(b, bsdf_mean_cosine(share));
+        thin_film t = bsdf_film_at(b, seen->cosine);
         f = v3_lerp(f, thin_film_reflectance(&t, b->f0), b->film.share);
     }
-    return v3_scale(f, full);
+    return v3_scale(f, seen->full);
 }
 
 #endif

@@ -3,9 +3,10 @@
 #ifndef KILN_RENDER_BSDF_TYPES_H
 #define KILN_RENDER_BSDF_TYPES_H
 
-#include "render/bsdf/albedo.h"
+#include "render/bsdf/anisotropy.h"
 #include "render/bsdf/frame.h"
 #include "render/bsdf/lobes/ggx.h"
+#include "render/bsdf/lobes/grazing.h"
 
 /* The lobes that sampling chooses among (bsdf.h). */
 #define BSDF_LOBES(X)                                                                                                  \
@@ -14,7 +15,8 @@
     X(REFLECTION, "GGX reflection")                                                                                    \
     X(TRANSMISSION, "GGX refraction")                                                                                  \
     X(CLEARCOAT, "GGX reflection of a clear coat")                                                                     \
-    X(SHEEN, "Charlie")
+    X(SHEEN, "Charlie")                                                                                                \
+    X(GRAZING, "what microfacets reflect more than once, either side")
 
 /* What can occur: a constant at every call, so that what it excludes costs nothing. */
 enum {
@@ -29,9 +31,9 @@ enum {
     BSDF_LAYERED = BSDF_COVERED | BSDF_ANISOTROPIC | BSDF_TRANSLUCENT /* any of them implies GLOSSY */
 };
 
-/* A mean loss is a divisor, and its inverse the largest weight of a sample of what is given back: nearly smooth surfaces,
- * whose loss is all at grazing angles, get less back than they lose. */
-#define BSDF_LEAST_LOSS 1e-4f
+/* Under a mean that is a divisor: 0 only where what it divides is 0 too. The least mean loss of a surface that is no
+ * mirror is some 10⁻⁷. */
+#define BSDF_LEAST_MEAN 1e-20f
 
 /* What the material says at a point. */
 typedef struct surface {
@@ -89,7 +91,8 @@ typedef struct bsdf {
     vec2 alphas;                    /* along x and y; x is the larger */
     float alpha;                    /* that tables are asked for */
     albedo_node roughness;
-    float isotropy;                 /* 1, and less where tables of one alpha would give back too much */
+    anisotropy brushed;             /* read under BSDF_ANISOTROPIC */
+    float from_inside;              /* what anisotropy leaves of the loss of an interface whose far side is the thinner one */
     vec3 diffuse;                   /* base · what its coat lets in at wo / the mean of that */
     vec3 metal_again;               /* multiple scattering of the metal, but for its factor at wi */
     vec3 f0;                        /* the dielectric's, at normal incidence */
@@ -103,6 +106,8 @@ typedef struct bsdf {
     vec3 wide;                      /* albedo of DIFFUSE and BELOW together */
     float p_diffuse, p_below, p_glossy; /* selection probabilities, glossy: REFLECTION and TRANSMISSION; sum 1, or all 0 */
     float p_straight;               /* of glossy, what passes straight on where that is a delta */
+    float p_grazing, p_grazing_below; /* how much of p_diffuse and of p_below goes by GRAZING's density instead */
+    grazing_lobe grazing;
     /* LAYERED */
     vec3 passes;                    /* diffuse transmission, but for its factor at wi */
     bsdf_film film;

@@ -15,12 +15,12 @@ enum { D = SHADING_MASK_DIFFUSE, G = SHADING_MASK_GLOSSY, C = SHADING_MASK_COATE
 #define BROWN {0.5f, 0.3f, 0.1f}
 
 #define NO_LAYERS .clearcoat = 0
-/* What nearly smooth interfaces give back of their loss they give back near the horizon, but are sampled by the cosine;
- * microfacets that reflect at grazing angles alone are not chosen by what they reflect. */
+/* Microfacets that reflect at grazing angles alone are not chosen by what they reflect; weak rough interfaces lose most of
+ * what comes from near the horizon, and give it back there. */
 #define UNEVEN(moment) .most_moment = moment
 #define ALL_LAYERS                                                                                                     \
     .clearcoat = 0.7f, .clearcoat_roughness = 0.3f, .sheen = GOLD, .sheen_roughness = 0.4f, .anisotropy = 0.5f,        \
-    .film = 0.5f, .film_ior = 1.4f, .film_thickness = 350, .pass = 0.5f, .pass_color = BROWN, .off_white = 0.1f
+    .film = 0.5f, .film_ior = 1.4f, .film_thickness = 350, .pass = 0.5f, .pass_color = BROWN
 
 /* name, mask, metallic, specular, ior, transmission, thin, inside, white, base, specular colour */
 const bsdf_case bsdf_cases[] = {
@@ -44,7 +44,7 @@ const bsdf_case bsdf_cases[] = {
     {"glass 1.05", T, 0, 1, 1.05f, 1, 0, 0, 1, WHITE, WHITE, UNEVEN(4)},
     {"glass 1.33", T, 0, 1, 1.33f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
     {"glass 1.33 in", T, 0, 1, 1.33f, 1, 0, 1, 1, WHITE, WHITE, NO_LAYERS},
-    {"glass 1.5", T, 0, 1, 1.5f, 1, 0, 0, 1, WHITE, WHITE, UNEVEN(12)},
+    {"glass 1.5", T, 0, 1, 1.5f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
     {"glass 1.5 in", T, 0, 1, 1.5f, 1, 0, 1, 1, WHITE, WHITE, NO_LAYERS},
     {"glass 2.4", T, 0, 1, 2.4f, 1, 0, 0, 1, WHITE, WHITE, NO_LAYERS},
     {"glass 2.4 in", T, 0, 1, 2.4f, 1, 0, 1, 1, WHITE, WHITE, NO_LAYERS},
@@ -57,26 +57,26 @@ const bsdf_case bsdf_cases[] = {
     {"clearcoat on lambert", C, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1},
     {"rough clearcoat on lambert", C, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.5f},
     {"clearcoat on plastic", C, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.1f,
-     .off_white = 0.02f},
-    {"half a clearcoat on metal", C, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 0.5f, .off_white = 0.03f},
+     .off_white = 0.012f},
+    {"half a clearcoat on metal", C, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .clearcoat = 0.5f, .off_white = 0.02f},
     {"clearcoat on gold", C, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.3f},
     {"tilted clearcoat", C, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.6f,
      .clearcoat_tilt = 0.3f},
     {"clearcoat on glass", L, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.2f},
     {"clearcoat on glass, in", L, 0, 1, 1.5f, 1, 0, 1, 0, WHITE, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.2f},
     {"clearcoat on black", C, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .clearcoat = 1, .clearcoat_roughness = 0.02f},
-    {"sheen on lambert", L, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .sheen = WHITE, .sheen_roughness = 0.5f, .off_white = 0.02f},
+    {"sheen on lambert", L, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .sheen = WHITE, .sheen_roughness = 0.5f},
     {"narrow sheen on plastic", L, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .sheen = GOLD, .sheen_roughness = 0.1f},
     {"sheen on black", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .sheen = GOLD, .sheen_roughness = 1},
     {"sheen of no roughness", L, 0, 0, 1.5f, 0, 1, 0, 0, BLACK, WHITE, .sheen = WHITE, .sheen_roughness = 0, UNEVEN(5)},
-    {"half anisotropic metal", C, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 0.5f, .off_white = 0.1f},
-    {"anisotropic metal", C, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 1, .off_white = 0.3f},
-    {"anisotropic plastic", C, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .anisotropy = 0.7f, .off_white = 0.1f},
-    {"anisotropic glass", L, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .anisotropy = 0.6f, .off_white = 0.1f},
-    {"anisotropic thin wall", L, 0, 1, 1.5f, 1, 1, 0, 0, WHITE, WHITE, .anisotropy = 0.6f, .off_white = 0.1f},
+    {"half anisotropic metal", C, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 0.5f},
+    {"anisotropic metal", C, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .anisotropy = 1},
+    {"anisotropic plastic", C, 0, 1, 1.5f, 0, 1, 0, 0, BROWN, WHITE, .anisotropy = 0.7f},
+    {"anisotropic glass", L, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .anisotropy = 0.6f},
+    {"anisotropic thin wall", L, 0, 1, 1.5f, 1, 1, 0, 1, WHITE, WHITE, .anisotropy = 0.6f},
     {"film on metal", F, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, .film = 1, .film_ior = 1.8f, .film_thickness = 400},
     {"film on plastic", F, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 300,
-     .off_white = 0.15f},
+     .off_white = 0.015f},
     {"film of no thickness", F, 0, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .film = 1, .film_ior = 1.3f},
     {"film on glass", F, 0, 1, 1.5f, 1, 0, 0, 0, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 500},
     {"film on glass, in", F, 0, 1, 1.5f, 1, 0, 1, 0, WHITE, WHITE, .film = 1, .film_ior = 1.3f, .film_thickness = 500},
@@ -92,7 +92,8 @@ const bsdf_case bsdf_cases[] = {
 
 const char *const bsdf_case_of_DIFFUSE = "lambert", *const bsdf_case_of_BELOW = "leaf",
                   *const bsdf_case_of_REFLECTION = "metal", *const bsdf_case_of_TRANSMISSION = "glass 1.5",
-                  *const bsdf_case_of_CLEARCOAT = "clearcoat on black", *const bsdf_case_of_SHEEN = "sheen on black";
+                  *const bsdf_case_of_CLEARCOAT = "clearcoat on black", *const bsdf_case_of_SHEEN = "sheen on black",
+                  *const bsdf_case_of_GRAZING = "metal";
 const size_t bsdf_case_count = sizeof bsdf_cases / sizeof *bsdf_cases;
 
 /* As render/world/materials.c and the material stage do. */

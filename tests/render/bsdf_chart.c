@@ -40,6 +40,9 @@ void chart_make(chart *c, const probe *p) {
     float coat = p->bsdf.clearcoat.alpha;
     if (p->mask & BSDF_CLEARCOAT && p->bsdf.clearcoat.near > 0 && !bsdf_is_mirror(coat))
         c->widths[c->width_count++] = (double)coat * (double)coat;
+    double horizon2 = 1 / (c->wo.z * c->wo.z + (double)p->bsdf.grazing.k2);
+    if (p->mask && p->bsdf.p_grazing + p->bsdf.p_grazing_below > 0 && horizon2 > GRAZING2)
+        c->widths[c->width_count++] = horizon2;
     for (int row = 0; row < CHART_ROWS; row++) c->x[row] = tan2_of(c, (row + 0.5) / CHART_ROWS);
 }
 
@@ -128,15 +131,28 @@ static void add_by_elevations(chart_sums *s, const chart *c) {
     }
 }
 
+/* z of a row, where half of the rows are as dense as GRAZING is and half as a cosine. */
+static double beyond_z(const chart *c, double row) {
+    double k2 = (double)c->probe->bsdf.grazing.k2, low = 0, high = 1;
+    for (int i = 0; i < 40; i++) {
+        double z2 = pow(0.5 * (low + high), 2), at = 0.5 * z2 + 0.5 * log1p(z2 / k2) / log1p(1 / k2);
+        *(at < row ? &low : &high) = 0.5 * (low + high);
+    }
+    return low;
+}
+
 /* Directions below that no half vector leads to. */
 static void add_beyond(chart_sums *s, const chart *c) {
-    enum { N = 64 };
-    for (int i = 0; i < N; i++)
-        for (int j = 0; j < N; j++) {
-            double z = sqrt((i + 0.5) / N), r = sqrt(1 - z * z), phi = 2 * M_PI * (j + 0.5) / N;
+    enum { ROWS = 128, SECTORS = 64 };
+    for (int i = 0; i < ROWS; i++) {
+        double z = beyond_z(c, (i + 0.5) / ROWS), r = sqrt(1 - z * z);
+        double angle = (beyond_z(c, (i + 1.0) / ROWS) - beyond_z(c, (double)i / ROWS)) * 2 * M_PI / SECTORS;
+        for (int j = 0; j < SECTORS; j++) {
+            double phi = 2 * M_PI * (j + 0.5) / SECTORS;
             dvec3 wi = {r * cos(phi), r * sin(phi), -z};
-            if (chart_cell(c, wi) == CHART_BEYOND) add(s, c, CHART_BEYOND, wi, M_PI / z / (N * N));
+            if (chart_cell(c, wi) == CHART_BEYOND) add(s, c, CHART_BEYOND, wi, angle);
         }
+    }
 }
 
 chart_sums chart_integrate(const chart *c) {

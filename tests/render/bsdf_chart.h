@@ -1,10 +1,11 @@
 /* tests/render/bsdf_chart.h: integrals of a BSDF over directions, cell by cell.
  *
  * Directions are told apart by their half vectors, which resolve a microfacet lobe of any width. With x = tan² of the
- * half vector's angle, GGX spreads evenly over x/(α² + x); a third of the rings are spaced so, the others for wide lobes
- * and for what grazes. A clear coat's lobe takes a fourth. Anisotropic surfaces are charted in coordinates that are
- * stretched until they are round, and once more in round ones, where wide lobes are. Sheen crowds at the horizon, whatever its half vectors: where nothing glossy is beside
- * it, the rings are elevations. */
+ * half vector's angle, GGX spreads evenly over x/(α² + x); a family of rings is spaced so, others for wide lobes and for
+ * what grazes. A clear coat's lobe takes another family, and so does light that comes and leaves near the
+ * horizon after many events. Anisotropic surfaces are charted in coordinates that are stretched until they are round, and
+ * once more in round ones, where wide lobes are. Sheen crowds at the horizon, whatever its half vectors: where nothing
+ * glossy is beside it, the rings are elevations. */
 #ifndef KILN_TESTS_RENDER_BSDF_CHART_H
 #define KILN_TESTS_RENDER_BSDF_CHART_H
 
@@ -22,7 +23,7 @@ typedef struct chart {
     const probe *probe;
     double a2;      /* α² along x */
     double stretch; /* α along y over that along x */
-    double widths[4]; /* of the families of rings; their number: */
+    double widths[5]; /* of the families of rings; their number: */
     int width_count;
     dvec3 wo;
     double sheen;  /* > 0: rings of elevation, over z/(z + sheen) */
