@@ -26,7 +26,7 @@ enum { D = SHADING_MASK_DIFFUSE, G = SHADING_MASK_GLOSSY, C = SHADING_MASK_COATE
 const bsdf_case bsdf_cases[] = {
     {"lambert", D, 0, 0, 1.5f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
     {"brown lambert", D, 0, 0, 1.5f, 0, 1, 0, 0, BROWN, WHITE, NO_LAYERS},
-    {"metal", G, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},
+    {"metal", G, 1, 1, 1.5f, 0, 1, 0, 1, WHITE, WHITE, .samples = 40000},
     {"gold", G, 1, 1, 1.5f, 0, 1, 0, 0, GOLD, WHITE, NO_LAYERS},
     {"black metal", G, 1, 1, 1.5f, 0, 1, 0, 0, BLACK, WHITE, UNEVEN(8)},
     {"coat 1.0", G, 0, 1, 1.0f, 0, 1, 0, 1, WHITE, WHITE, NO_LAYERS},

@@ -24,6 +24,7 @@ typedef struct bsdf_case {
     float pass; /* diffuse transmission */
     vec3 pass_color;
     float off_white; /* what compensation may miss, beside what tables do */
+    int samples; /* that test_bsdf.c draws, where a lobe hides among what is lost; 0: as many as of others */
     float most_moment; /* that E[m²]/E[m]² of a multiplier may have, where it is more than of others: test_bsdf.c */
 } bsdf_case;
 

@@ -27,6 +27,7 @@ typedef struct setting {
     const char *name;
     float roughness, cosine;
     double most_moment; /* 0: MOST_MOMENT */
+    int samples;
     stream random;
 } setting;
 
@@ -64,8 +65,8 @@ static void note_moment(const setting *s, double moment) {
 
 static void print_grid(void) {
     double tests = (double)bsdf_case_count * ROUGHNESSES * COSINES;
-    print_message("grid: %zu materials x up to %d roughnesses x %d cosines: %d chi-square tests of %d samples, each at the "
-                  "level of %.3g, %g jointly\n", bsdf_case_count, ROUGHNESSES, COSINES, grid.chi_squares, SAMPLES,
+    print_message("grid: %zu materials x up to %d roughnesses x %d cosines: %d chi-square tests of at least %d samples, "
+                  "each at the level of %.3g, %g jointly\n", bsdf_case_count, ROUGHNESSES, COSINES, grid.chi_squares, SAMPLES,
                   sidak(LEVEL, tests), LEVEL);
     print_message("smallest p-value %.3g (%s, roughness %g, cos %g); the least of as many even ones has a mean of %.3g\n",
                   grid.least_p, grid.least_at.name, (double)grid.least_at.roughness, (double)grid.least_at.cosine,
@@ -92,10 +93,11 @@ static void for_each_setting(void (*check)(setting *, double tests)) {
         subject_make(subjects, &bsdf_cases[c]);
         for (int r = 0; r < (bsdf_cases[c].mask ? ROUGHNESSES : 1); r += SPARSE)
             for (int k = 0; k < COSINES; k++) {
+                int samples = bsdf_cases[c].samples ? bsdf_cases[c].samples : SAMPLES;
                 uint32_t seed = hash_triple((uint32_t)c, (uint32_t)r, (uint32_t)k);
                 vec3 wo = direction_at((double)cosines[k], (double)unit_float(hash32(seed)));
                 setting s = {probe_make(subjects, roughnesses[r], wo), bsdf_cases[c].name, roughnesses[r], cosines[k],
-                             (double)bsdf_cases[c].most_moment, {seed, 0}};
+                             (double)bsdf_cases[c].most_moment, samples, {seed, 0}};
                 check(&s, (double)bsdf_case_count * ROUGHNESSES * COSINES);
             }
     }
@@ -136,7 +138,7 @@ static double quadrature_error(const chart *c) {
 
 static void check_moment(const setting *s, const tally *power, double squares) {
     if (!(power->mean > LEAST_POWER)) return;
-    double moment = squares / SAMPLES / (power->mean * power->mean);
+    double moment = squares / s->samples / (power->mean * power->mean);
     double most = s->most_moment > 0 ? s->most_moment : MOST_MOMENT;
     note_moment(s, moment);
     if (!(moment < most)) complain(s, "E[m²]/E[m]² of the multiplier is %.2f, at most %.2f is expected", moment, most);
@@ -151,7 +153,7 @@ static void check_counts(setting *s, double tests) {
     double integral[3] = {sum.x, sum.y, sum.z};
     double counts[CHART_CELLS + 1] = {0}, wanted[CHART_CELLS + 1], all = 0, squares = 0;
     tally means[3] = {{0}}, power = {0};
-    for (int n = 0; n < SAMPLES; n++) {
+    for (int n = 0; n < s->samples; n++) {
         bsdf_sampled r = draw(s, &s->random);
         bool lost = !(r.pdf > 0) || is_absorbed(s, &r);
         counts[lost ? CHART_CELLS : chart_cell(&c, (dvec3){(double)r.wi.x, (double)r.wi.y, (double)r.wi.z})]++;
@@ -162,9 +164,9 @@ static void check_counts(setting *s, double tests) {
         tally_add(&means[1], r.pdf > 0 ? (double)r.multiplier.y : 0);
         tally_add(&means[2], r.pdf > 0 ? (double)r.multiplier.z : 0);
     }
-    for (int i = 0; i < CHART_CELLS; i++) all += e.pdf[i], wanted[i] = SAMPLES * e.pdf[i];
-    wanted[CHART_CELLS] = SAMPLES * fmax(1 - all, 0);
-    double lost = counts[CHART_CELLS] / SAMPLES, error = sqrt(lost * (1 - lost) / SAMPLES) + 1e-9;
+    for (int i = 0; i < CHART_CELLS; i++) all += e.pdf[i], wanted[i] = s->samples * e.pdf[i];
+    wanted[CHART_CELLS] = s->samples * fmax(1 - all, 0);
+    double lost = counts[CHART_CELLS] / s->samples, error = sqrt(lost * (1 - lost) / s->samples) + 1e-9;
     if (normal_tail(fmax(fabs(lost - (1 - all)) - off_chart, 0) / error) < sidak(LEVEL, tests))
         complain(s, "pdf integrates to %.5f, and %.5f come to nothing", all, lost);
     double p = chi_square_p(counts, wanted, CHART_CELLS + 1);
@@ -173,7 +175,7 @@ static void check_counts(setting *s, double tests) {
     check_moment(s, &power, squares);
     for (int k = 0; k < 3; k++) {
         /* Of events that are expected less than twenty times the samples tell no variance: they are Poisson's. */
-        double least = sqrt(fmin(integral[k], 20.0 / SAMPLES) / SAMPLES), mean = means[k].mean;
+        double least = sqrt(fmin(integral[k], 20.0 / s->samples) / s->samples), mean = means[k].mean;
         double off = fmax(fabs(mean - integral[k]) - off_chart * integral[k] - 1e-5, 0);
         if (normal_tail(off / fmax(tally_error(&means[k]), least + 1e-9)) < sidak(LEVEL, 3 * tests))
             complain(s, "the mean multiplier is %.5f ± %.5f, the integral %.5f", mean, tally_error(&means[k]), integral[k]);
