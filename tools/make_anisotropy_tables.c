@@ -91,7 +91,7 @@ static int32_t made[ANISOTROPY_SIZE];
 static double mean_loss(alphas a) {
     enum { COSINES = 200, AZIMUTHS = 48 };
     double sum = 0, least = 0.02 * a.x, octaves = log1p(1 / least);
-    anisotropy where = anisotropy_make((float)a.x, (float)a.y);
+    anisotropy_node where = anisotropy_make((float)a.x, (float)a.y);
     for (int i = 0; i < COSINES; i++) {
         double shifted = least * exp((i + 0.5) / COSINES * octaves), mu = shifted - least, sine = sqrt(1 - mu * mu);
         double before = 0, root = sqrt(a.y / a.x);

@@ -35,17 +35,18 @@ KERNEL float anisotropy_ratio_at(float ratio) {
 }
 
 /* Where a surface lies in the table. */
-typedef struct anisotropy { albedo_node alpha, ratio; float stretch; } anisotropy; /* stretch: αy/αx */
+typedef struct anisotropy_node { albedo_node alpha, ratio; float stretch; } anisotropy_node; /* stretch: αy/αx */
 
-KERNEL anisotropy anisotropy_make(float larger, float smaller) {
+KERNEL anisotropy_node anisotropy_make(float larger, float smaller) {
     float ratio = (smaller + 1e-20f) / (larger + 1e-20f);
-    return (anisotropy){albedo_node_of(sqrtf(larger), ANISOTROPY_ALPHAS),
-                        albedo_node_of(anisotropy_ratio_at(ratio), ANISOTROPY_RATIOS), ratio};
+    return (anisotropy_node){albedo_node_of(sqrtf(larger), ANISOTROPY_ALPHAS),
+                             albedo_node_of(anisotropy_ratio_at(ratio), ANISOTROPY_RATIOS), ratio};
 }
 
 KERNEL float anisotropy_mean(float larger, float ratio) {
-    return albedo_bilinear(anisotropy_mean_table, ANISOTROPY_MEAN_ALPHAS, albedo_node_of(sqrtf(larger), ANISOTROPY_MEAN_ALPHAS),
-                           albedo_node_of(anisotropy_ratio_at(ratio), ANISOTROPY_MEAN_RATIOS));
+    albedo_node column = albedo_node_of(sqrtf(larger), ANISOTROPY_MEAN_ALPHAS);
+    albedo_node row = albedo_node_of(anisotropy_ratio_at(ratio), ANISOTROPY_MEAN_RATIOS);
+    return albedo_bilinear(anisotropy_mean_table, ANISOTROPY_MEAN_ALPHAS, column, row);
 }
 
 /* A stretched direction: its cosine, its length before it was made a unit, and where it lies in azimuth. */
@@ -77,7 +78,8 @@ KERNEL anisotropy_factors anisotropy_slice(const int32_t *table, int32_t at, flo
 }
 
 /* Of anisotropy_table; the generator has one of its own. larger: αx. */
-KERNEL anisotropy_factors anisotropy_look_up(const int32_t *table, const anisotropy *a, anisotropy_direction d, float larger) {
+KERNEL anisotropy_factors anisotropy_look_up(const int32_t *table, const anisotropy_node *a, anisotropy_direction d,
+                                             float larger) {
     albedo_node column = albedo_node_of(albedo_cosine_at(d.mu, larger), ANISOTROPY_COSINES);
     albedo_node row = albedo_node_of(d.turn, ANISOTROPY_TURNS);
     int32_t at = column.index + row.index * ANISOTROPY_COSINES + a->alpha.index * ANISOTROPY_SLICE +

@@ -91,7 +91,7 @@ typedef struct bsdf {
     vec2 alphas;                    /* along x and y; x is the larger */
     float alpha;                    /* that tables are asked for */
     albedo_node roughness;
-    anisotropy brushed;             /* read under BSDF_ANISOTROPIC */
+    anisotropy_node brushed;        /* read under BSDF_ANISOTROPIC */
     float from_inside;              /* what anisotropy leaves of the loss of an interface whose far side is the thinner one */
     vec3 diffuse;                   /* base · what its coat lets in at wo / the mean of that */
     vec3 metal_again;               /* multiple scattering of the metal, but for its factor at wi */

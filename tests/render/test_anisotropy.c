@@ -37,7 +37,7 @@ static void isotropic_factors_are_one(void **state) {
     for (uint32_t n = 0; n < 2000; n++) {
         float alpha = unit_float(hash_pair(n, 5)), mu = unit_float(hash_pair(n, 6)), s = sqrtf(1 - mu * mu);
         fm_pair turn = fm_sincos_2pi(unit_float(hash_pair(n, 7)));
-        anisotropy a = anisotropy_make(alpha, alpha);
+        anisotropy_node a = anisotropy_make(alpha, alpha);
         anisotropy_direction d = anisotropy_stretch(v3(s * turn.cos, s * turn.sin, mu), a.stretch);
         anisotropy_factors f = anisotropy_look_up(anisotropy_table, &a, d, alpha);
         assert_true(f.loss == 1 && f.cosine == 1 && a.stretch == 1 && anisotropy_mean(alpha, a.stretch) == 1);
@@ -54,7 +54,7 @@ static void look_ups_are_near(void **state) {
         alphas a = {smaller + (1 - smaller) * strength * strength, smaller};
         double mu = 0.005 + 0.995 * v * v, phi = 0.5 * M_PI * (double)unit_float(hash_pair(n, 11)), s = sqrt(1 - mu * mu);
         dir w = {s * cos(phi), s * sin(phi), mu};
-        anisotropy where = anisotropy_make((float)a.x, (float)a.y);
+        anisotropy_node where = anisotropy_make((float)a.x, (float)a.y);
         anisotropy_direction d = anisotropy_stretch(v3((float)w.x, (float)w.y, (float)w.z), where.stretch);
         anisotropy_factors f = anisotropy_look_up(anisotropy_table, &where, d, (float)a.x);
         said table = isotropic((double)d.mu, (double)d.length, a);
