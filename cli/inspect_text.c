@@ -235,6 +235,55 @@ static void print_rendering(const printer *p) {
     text_append(p->out, "\n");
 }
 
+/* "by material 3 Leaves, material 5 Grass and 4 more" */
+static void print_callers(const printer *p, const json_t *row) {
+    const json_t *callers = member(row, "callers"), *c;
+    size_t i;
+    json_array_foreach(callers, i, c) {
+        text_format(p->out, "%s%s", i ? ", " : "by ", text_in(c, "kind"));
+        if (!is_null(c, "index")) text_format(p->out, " %.0f", number_in(c, "index"));
+        if (strcmp(text_in(c, "name"), text_in(c, "kind")) != 0) {
+            text_append(p->out, " ");
+            append_name(p->out, text_in(c, "name"), 0);
+        }
+    }
+    double more = number_in(row, "caller_count") - (double)json_array_size(callers);
+    if (more > 0) text_format(p->out, " and %.0f more", more);
+}
+
+static void print_effect(const printer *p, const json_t *row) {
+    static const char *const follows[] = {"stages", "terms", "embree", "samples"};
+    text_format(p->out, "  %-20s ", text_in(row, "name"));
+    if (is_true(row, "called")) print_callers(p, row);
+    else text_append(p->out, "as --effects asks");
+    for (size_t i = 0; p->all && i < sizeof follows / sizeof *follows; i++)
+        if (*text_in(row, follows[i]))
+            text_format(p->out, "\n  %-20s   %s: %s", "", follows[i], text_in(row, follows[i]));
+    if (number_in(row, "bytes") > 0) {
+        text_append(p->out, ", ");
+        append_bytes(p->out, number_in(row, "bytes"));
+    }
+    text_append(p->out, "\n");
+}
+
+static void print_effects(const printer *p) {
+    const json_t *rows = member(p->root, "effects"), *row;
+    enum { LINE_WIDTH = 110 };
+    size_t i, idle = 0, width = 0;
+    text_append(p->out, "\nEffects\n");
+    json_array_foreach(rows, i, row)
+        if (is_true(row, "called") || is_true(row, "runs")) print_effect(p, row);
+    json_array_foreach(rows, i, row) {
+        if (is_true(row, "called") || is_true(row, "runs")) continue;
+        const char *name = text_in(row, "name");
+        bool wraps = width + strlen(name) > LINE_WIDTH;
+        text_append(p->out, !idle++ ? "  not called for       " : wraps ? ",\n                       " : ", ");
+        text_append(p->out, name);
+        width = (width && !wraps ? width + 2 : 23) + strlen(name);
+    }
+    if (idle) text_append(p->out, "\n");
+}
+
 void inspect_text(const char *json, bool all, kiln_text *out) {
     json_t *root = json_loads(json, 0, NULL);
     const printer p = {out, root, all};
@@ -248,6 +297,7 @@ void inspect_text(const char *json, bool all, kiln_text *out) {
     print_list(&p, "Images", "images", print_image);
     print_list(&p, "Lights", "lights", print_light);
     print_list(&p, "Cameras", "cameras", print_camera);
+    print_effects(&p);
     print_rendering(&p);
     json_decref(root);
 }

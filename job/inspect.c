@@ -2,6 +2,7 @@
 
 #include <stdlib.h>
 
+#include "job/effects.h"
 #include "job/stats.h"
 #include "scene/scene.h"
 
@@ -180,6 +181,7 @@ static json_t *describe(const job_run *r) {
     put(o, "lights", lights(r->scene));
     put(o, "cameras", cameras(r->scene));
     put(o, "rendering", rendering(r));
+    put(o, "effects", effects_facts(&r->plan));
     put(o, "memory_estimate", memory_estimate(r, textures));
     put(o, "warnings", stats_messages(r->report, KILN_WARNING));
     return o;
@@ -188,7 +190,7 @@ static json_t *describe(const job_run *r) {
 bool inspect(job_run *r, json_t **json) {
     bool done = run_phase(r, "import") && run_import(r) && run_phase(r, "frame") && run_camera(r) &&
                 run_phase(r, "subdivide") && run_subdivide(r) && run_phase(r, "light") && run_light(r) &&
-                run_phase(r, "images") && kiln_renderer_check_images(r->scene, r->options->threads, r->report) &&
+                run_phase(r, "images") && run_plan(r) &&
                 run_check_strict(r);
     run_phase(r, NULL);
     *json = done ? describe(r) : NULL;

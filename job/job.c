@@ -57,7 +57,8 @@ static bool draw(job_run *r) {
            run_phase(r, "subdivide") && run_subdivide(r) && run_phase(r, "light") && run_light(r) &&
            run_phase(r, "build") && run_build(r) && run_check_strict(r) &&
            run_phase(r, "expose") && run_expose(r) && run_phase(r, "render") && run_render(r) &&
-           run_phase(r, "write") && run_write(r);
+           run_phase(r, "write") && run_write(r) &&
+           (!r->options->effects.removed || (run_phase(r, "compare") && run_compare(r)));
 }
 
 static bool finish(job_run *r) {

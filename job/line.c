@@ -60,13 +60,27 @@ bool run_film(job_run *r) {
     return done;
 }
 
+kiln_renderer_options run_renderer_options(const job_run *r) {
+    const job_options *o = r->options;
+    return (kiln_renderer_options){.threads = o->threads,
+                                   .embree_config = o->embree_config,
+                                   .decoding = &r->decoding,
+                                   .texture_filter = o->texture_filter,
+                                   .effects = o->effects};
+}
+
 bool run_build(job_run *r) {
     if (r->renderer) return true;
-    kiln_renderer_options options = {r->options->threads, r->options->embree_config, &r->decoding,
-                                     r->options->texture_filter};
+    kiln_renderer_options options = run_renderer_options(r);
     if (!kiln_renderer_create(r->scene, &options, &r->renderer, r->report)) return false;
     r->memory = kiln_renderer_describe_memory(r->renderer);
+    r->plan = kiln_renderer_describe_effects(r->renderer, &r->view.camera);
     return true;
+}
+
+bool run_plan(job_run *r) {
+    kiln_renderer_options options = run_renderer_options(r);
+    return kiln_plan_effects(r->scene, &r->view.camera, &options, &r->plan, r->report);
 }
 
 kiln_render_options run_render_options(const job_run *r) {

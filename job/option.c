@@ -140,12 +140,19 @@ static bool refuse_choice(const option_row *row, const char *text, const kiln_wh
     return false;
 }
 
+static bool refuse(const option_row *row, const char *text, const kiln_where *where, kiln_report *report) {
+    kiln_text remedy = {0};
+    if (row->choices) return refuse_choice(row, text, where, report);
+    if (row->explain) row->explain(text, &remedy);
+    report_error(report, KILN_CODE_USAGE, where, remedy.data, "'%s' is not %s", text, row->domain);
+    text_free(&remedy);
+    return false;
+}
+
 bool option_set(const option_table *table, const option_row *row, const char *text, void *fields, uint64_t *given,
                 kiln_arena *arena, const kiln_where *where, kiln_report *report) {
     void *field = (char *)fields + row->offset;
-    if (!row->kind->parse(row, text, field, arena))
-        return row->choices ? refuse_choice(row, text, where, report)
-                            : report_error(report, KILN_CODE_USAGE, where, NULL, "'%s' is not %s", text, row->domain);
+    if (!row->kind->parse(row, text, field, arena)) return refuse(row, text, where, report);
     if (row->kind == &option_text && !*(const char **)field) return report_no_memory(report, "reading options");
     *given |= (uint64_t)1 << (row - table->rows);
     return true;

@@ -38,6 +38,7 @@ struct option_row {
     size_t offset;        /* of the field */
     unsigned also;        /* bits of those who take the option beside the commands that the table is for */
     unsigned except;      /* bits of those commands that do not take it all the same */
+    void (*explain)(const char *text, kiln_text *remedy); /* what is wrong with a text that parse refused; NULL */
 };
 
 typedef struct option_table {

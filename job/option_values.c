@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "job/effects.h"
 #include "job/options.h"
 
 /* Takes the text up to `end` (or the end of all); false when it is longer than anything that could be valid. */
@@ -246,6 +247,26 @@ static void print_subdivide(const option_row *row, const void *field, kiln_text 
     else text_append(out, s->mode == KILN_SUBDIVIDE_OFF ? "off" : "auto");
 }
 
+static bool parse_effects(const option_row *row, const char *text, void *field, kiln_arena *arena) {
+    (void)row, (void)arena;
+    kiln_text problem = {0};
+    kiln_effects wish;
+    bool done = effects_parse(text, &wish, &problem);
+    if (done) *(kiln_effects *)field = wish;
+    text_free(&problem);
+    return done;
+}
+
+void option_explain_effects(const char *text, kiln_text *remedy) {
+    kiln_effects wish;
+    (void)effects_parse(text, &wish, remedy);
+}
+
+static void print_effects(const option_row *row, const void *field, kiln_text *out) {
+    (void)row;
+    effects_print(field, out);
+}
+
 const option_kind option_size = {parse_size, print_size, false, false};
 const option_kind option_crop = {parse_crop, print_crop, false, false};
 const option_kind option_percent = {parse_percent, print_percent, false, false};
@@ -256,3 +277,4 @@ const option_kind option_orbit = {parse_orbit, print_orbit, false, false};
 const option_kind option_focus = {parse_focus, print_focus, false, false};
 const option_kind option_background = {parse_background, print_background, false, false};
 const option_kind option_subdivide = {parse_subdivide, print_subdivide, false, false};
+const option_kind option_effects = {parse_effects, print_effects, false, false};

@@ -59,6 +59,7 @@ typedef struct job_options {
     job_layers layers;
     double exposure;
     const char *display, *view, *look, *ocio, *working_space;
+    kiln_effects effects;
     bool allow_outside;
     const char *embree_config, *stats;
     bool strict;
@@ -91,6 +92,10 @@ bool job_rules_choose(const job_options *, job_rules *, kiln_report *);
 
 /* Kinds of single options; option_values.c. */
 extern const option_kind option_size, option_crop, option_percent, option_duration, option_filter, option_roulette,
-    option_orbit, option_focus, option_background, option_subdivide, option_embree;
+    option_orbit, option_focus, option_background, option_subdivide, option_embree,
+    option_effects;
+
+/* What is wrong with a text that option_effects refused. */
+void option_explain_effects(const char *text, kiln_text *remedy);
 
 #endif

@@ -122,6 +122,11 @@ static const option_row rows[] = {
     {"working-space", 0, "NAME", color, "scene-linear space that light is computed in", NULL, "lin_rec709",
      "the name of a colour space", &option_text, FIELD(working_space), .also = JOB_INFO},
 
+    {"effects", 0, "auto|all|LIST", machine,
+     "what is simulated: auto, what the scene calls for; all, every term of the kernels, with the same bits; '-name' drops "
+     "an effect and tells by how much the picture changes, '+name' runs one for nothing; 'kiln inspect' lists them",
+     "auto", NULL, "auto, all, or a list such as -dispersion,+clearcoat", &option_effects, FIELD(effects),
+     .also = JOB_INSPECT, .explain = option_explain_effects},
     {"threads", 0, "N", machine, "threads to work with", NULL, "$KILN_THREADS, else all cores",
      "a whole number from 1 to 4096", &option_count, .low = 1, .high = 4096, FIELD(threads),
      .also = JOB_INSPECT | JOB_INFO},

@@ -7,6 +7,7 @@
 #include "job/lighting.h"
 #include "job/outputs.h"
 #include "job/picture.h"
+#include "kiln/difference.h"
 #include "kiln/import.h"
 
 typedef struct job_phase {
@@ -15,6 +16,13 @@ typedef struct job_phase {
 } job_phase;
 
 enum { JOB_PHASES_MAX = 16 };
+
+/* The picture without some effects against the picture with them. */
+typedef struct job_ablation {
+    uint64_t removed; /* of those that the scene calls for; 0: nothing was compared */
+    kiln_film_difference difference;
+    double time;      /* of a sample, over that of one with them */
+} job_ablation;
 
 typedef struct job_run {
     const job_options *options;
@@ -40,6 +48,7 @@ typedef struct job_run {
     output_plan outputs;
     kiln_film_desc film_desc;
     kiln_renderer *renderer;
+    kiln_effect_plan plan; /* of the renderer; of an inspection, of one that there might be */
     kiln_renderer_memory memory;
     kiln_view *display;
     double exposure;
@@ -48,6 +57,7 @@ typedef struct job_run {
     kiln_render_stats stats;
     bool rendered;
     kiln_film_error error;
+    job_ablation ablation;
     uint32_t outputs_written;
     int exit_code; /* at the end */
 } job_run;
@@ -72,12 +82,16 @@ bool run_light(job_run *);   /* and commits the scene; where emitters are the on
 /* line.c */
 bool run_film(job_run *);
 bool run_build(job_run *); /* unless run_try_emitters did */
+bool run_plan(job_run *);  /* what that would run, and whether its pictures can be read */
 /* Looks by a quick render whether the emitters of a committed scene light what is seen; if not, puts up the studio. */
 bool run_try_emitters(job_run *);
 bool run_expose(job_run *);
 /* The run's options as a renderer wants them. */
 kiln_render_options run_render_options(const job_run *);
 bool run_render(job_run *);
+/* ablation.c: what --effects -NAME has changed; nothing, where it was not given. */
+bool run_compare(job_run *);
+kiln_renderer_options run_renderer_options(const job_run *);
 /* Writes every output, whatever happened to the others. */
 bool run_write(job_run *);
 /* What --strict asks, at any time: false when the report has warnings. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/threads.h"
+#include "job/effects.h"
 #include "job/machine.h"
 #include "job/metadata.h"
 #include "scene/scene.h"
@@ -187,6 +188,20 @@ static json_t *render_facts(const job_run *r) {
     return o;
 }
 
+static json_t *ablation_facts(const job_run *r) {
+    const job_ablation *a = &r->ablation;
+    json_t *o = json_object();
+    kiln_text names = {0};
+    if (!a->removed) return json_null();
+    effects_list(a->removed, &names);
+    put_text(o, "removed", names.data);
+    put_number(o, "difference", a->difference.known ? a->difference.root : NAN);
+    put_number(o, "light", a->difference.known ? a->difference.light : NAN);
+    put_number(o, "time", a->difference.known ? a->time : NAN);
+    text_free(&names);
+    return o;
+}
+
 json_t *stats_memory(const job_run *r) {
     json_t *o = json_object();
     put_count(o, "peak", machine_peak_memory());
@@ -262,6 +277,8 @@ json_t *stats_make(const job_run *r) {
     if (r->rendered) {
         put(o, "picture", picture_facts(r));
         put(o, "render", render_facts(r));
+        put(o, "effects", effects_facts(&r->plan));
+        put(o, "ablation", ablation_facts(r));
     }
     put(o, "outputs", output_facts(r));
     put(o, "memory", stats_memory(r));

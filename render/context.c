@@ -54,7 +54,10 @@ bool context_make(const kiln_renderer *r, const kiln_render_options *o, const ki
     light_choice choice = o->estimator == KILN_ESTIMATOR_BSDF          ? CHOOSE_POINTS
                           : o->light_sampling == KILN_LIGHTS_UNIFORM ? CHOOSE_UNIFORMLY
                                                                        : CHOOSE_BY_POWER;
+    kiln_effect_plan plan = r->world->plan;
+    scan_camera(r->scene, view, &plan);
     *c = (path_context){.world = r->world,
+                        .effects = plan.runs,
                         .width = d->width,
                         .height = d->height,
                         .seed = hash_u64(o->seed),
@@ -63,6 +66,7 @@ bool context_make(const kiln_renderer *r, const kiln_render_options *o, const ki
                         .roulette = o->roulette.kind,
                         .roulette_p = (float)o->roulette.p,
                         .roulette_min = o->roulette.min_depth,
+                        .samples_lights = lights->any[choice],
                         .light_cdf = lights->cdf[choice],
                         .light_guide = lights->guide[choice],
                         .max_depth = o->max_depth == KILN_DEPTH_ZERO ? 0 : o->max_depth ? o->max_depth : 64,

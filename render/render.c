@@ -11,13 +11,22 @@
 #include "render/record.h"
 #include "scene/transfer.h"
 
+static bool check_committed(const kiln_scene *scene, kiln_report *report) {
+    return scene->committed ||
+           report_error(report, KILN_CODE_USAGE, NULL, "call kiln_scene_commit first", "the scene is not committed");
+}
+
+static world_build_options build_options(const kiln_renderer_options *o, const kiln_decoding *decoding, uint32_t threads) {
+    return (world_build_options){.decoding = decoding, .filter = o->texture_filter, .effects = o->effects,
+                                 .threads = threads, .embree_config = o->embree_config};
+}
+
 bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *options, kiln_renderer **renderer,
                           kiln_report *report) {
     static const kiln_renderer_options defaults;
     if (!options) options = &defaults;
     *renderer = NULL;
-    if (!scene->committed)
-        return report_error(report, KILN_CODE_USAGE, NULL, "call kiln_scene_commit first", "the scene is not committed");
+    if (!check_committed(scene, report)) return false;
     kiln_decoding rec709;
     transfer_rec709(&rec709);
     bool given = options->decoding && options->decoding->present;
@@ -25,8 +34,8 @@ bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *
     if (!r) return report_no_memory(report, "making the renderer");
     r->scene = scene;
     r->threads = options->threads ? options->threads : threads_available();
-    if (!world_create(scene, given ? options->decoding : &rec709, options->texture_filter, r->threads,
-                      options->embree_config, &r->world, report)) {
+    world_build_options build = build_options(options, given ? options->decoding : &rec709, r->threads);
+    if (!world_create(scene, &build, &r->world, report)) {
         free(r);
         return false;
     }
@@ -34,8 +43,21 @@ bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_options *
     return true;
 }
 
-bool kiln_renderer_check_images(const kiln_scene *scene, uint32_t threads, kiln_report *report) {
-    return world_check_images(scene, threads, report);
+bool kiln_plan_effects(const kiln_scene *scene, const kiln_camera *view, const kiln_renderer_options *options,
+                       kiln_effect_plan *plan, kiln_report *report) {
+    static const kiln_renderer_options defaults;
+    if (!options) options = &defaults;
+    if (!check_committed(scene, report)) return false;
+    world_build_options build = build_options(options, NULL, options->threads ? options->threads : threads_available());
+    if (!world_plan(scene, &build, plan, report)) return false;
+    scan_camera(scene, view ? view : kiln_scene_camera(scene, 1), plan);
+    return true;
+}
+
+kiln_effect_plan kiln_renderer_describe_effects(const kiln_renderer *r, const kiln_camera *view) {
+    kiln_effect_plan plan = r->world->plan;
+    scan_camera(r->scene, view ? view : kiln_scene_camera(r->scene, 1), &plan);
+    return plan;
 }
 
 void kiln_renderer_destroy(kiln_renderer *r) {

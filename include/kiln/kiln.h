@@ -4,6 +4,8 @@
 
 #include "kiln/api.h"
 #include "kiln/color.h"
+#include "kiln/difference.h"
+#include "kiln/effects.h"
 #include "kiln/film.h"
 #include "kiln/image.h"
 #include "kiln/import.h"

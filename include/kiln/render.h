@@ -3,6 +3,7 @@
 #define KILN_RENDER_H
 
 #include "kiln/api.h"
+#include "kiln/effects.h"
 #include "kiln/film.h"
 #include "kiln/report.h"
 #include "kiln/scene.h"
@@ -35,6 +36,7 @@ typedef struct kiln_renderer_options {
     const char *embree_config; /* rtcNewDevice's string, "isa=avx2"; NULL: none */
     const kiln_decoding *decoding; /* NULL: linear Rec.709 */
     kiln_texture_filter texture_filter;
+    kiln_effects effects; /* beside what the scene calls for */
 } kiln_renderer_options;
 
 /* Reads scene, which must be committed, for as long as the renderer lives; the options during the call. On failure
@@ -43,9 +45,13 @@ KILN_API bool kiln_renderer_create(const kiln_scene *scene, const kiln_renderer_
                                    kiln_report *);
 KILN_API void kiln_renderer_destroy(kiln_renderer *); /* NULL: nothing happens */
 
-/* Decodes the pictures that a renderer of a committed scene would, and keeps nothing: every one that would make
- * kiln_renderer_create fail is an error. threads as above. */
-KILN_API bool kiln_renderer_check_images(const kiln_scene *scene, uint32_t threads, kiln_report *);
+/* What a renderer of a committed scene would run, and who calls for it. The pictures that it would use are decoded and
+ * not kept: every one that would make kiln_renderer_create fail is an error. options NULL: the defaults; what is said of
+ * decoding and Embree is not read. camera NULL: the scene's first, if it has one. The plan borrows names from the scene. */
+KILN_API bool kiln_plan_effects(const kiln_scene *scene, const kiln_camera *camera, const kiln_renderer_options *options,
+                                kiln_effect_plan *plan, kiln_report *);
+/* The same of a renderer that exists. */
+KILN_API kiln_effect_plan kiln_renderer_describe_effects(const kiln_renderer *, const kiln_camera *camera);
 
 typedef struct kiln_renderer_memory {
     size_t acceleration; /* bytes of the BVH */

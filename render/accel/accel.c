@@ -35,7 +35,7 @@ static void attach_triangles(accel *a, RTCScene scene, const world *w, const wor
 
 static RTCScene new_scene(accel *a, const world *w) {
     RTCScene scene = rtcNewScene(a->device);
-    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | (w->media_count > 1 ? EMBREE_QUERY_FILTERS : RTC_SCENE_FLAG_NONE));
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST | (HOLDS(w, SOLIDS) ? EMBREE_QUERY_FILTERS : RTC_SCENE_FLAG_NONE));
     /* HIGH falls back to MEDIUM with ROBUST without a word. */
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
     return scene;

@@ -13,7 +13,8 @@
  *
  * where [] is what layers let through (layers.h). Metal and coat use Schlick's Fresnel term as glTF 2.0, appendix B does;
  * the interface of a transmissive dielectric the exact one; a thin film replaces them. evaluate and pdf answer 0 for
- * delta lobes: only sample knows their direction. `mask` says which terms can occur and is a constant at every call. */
+ * delta lobes: only sample knows their direction. `mask` says which terms can occur and is a constant at every call. Terms
+ * that a surface does not have give the same bits as a mask without them: --effects all shows them to be nothing. */
 #ifndef KILN_RENDER_BSDF_BSDF_H
 #define KILN_RENDER_BSDF_BSDF_H
 
@@ -30,10 +31,12 @@ KERNEL void bsdf_make_roughness(unsigned mask, bsdf *b, const surface *s) {
     b->from_inside = 1.0f;
     if (!(mask & BSDF_ANISOTROPIC)) return;
     b->alphas.x = fm_lerp(b->alpha, 1.0f, s->anisotropy * s->anisotropy);
+    int brushed = s->anisotropy > 0.0f;
     b->brushed = anisotropy_make(b->alphas.x, b->alphas.y);
-    b->from_inside = sqrtf(b->brushed.stretch);
-    b->alpha = sqrtf(0.5f * (b->alphas.x * b->alphas.x + b->alpha * b->alpha));
-    b->roughness = albedo_roughness_node(sqrtf(b->alpha));
+    b->from_inside = brushed ? sqrtf(b->brushed.stretch) : 1.0f;
+    float mean = sqrtf(0.5f * (b->alphas.x * b->alphas.x + b->alpha * b->alpha));
+    b->alpha = brushed ? mean : b->alpha;
+    b->roughness = albedo_roughness_node(brushed ? sqrtf(mean) : s->roughness);
     b->grazing = grazing_make(fm_max(b->alpha, GGX_ALPHA_MIN));
 }
 
@@ -73,7 +76,7 @@ KERNEL void bsdf_make_weights(unsigned mask, bsdf *b, bsdf_wide w) {
     sum = b->p_clearcoat + b->p_sheen;
     sum = sum + w.up + w.below + w_glossy;
     float scale = sum > 0.0f ? 1.0f / sum : 0.0f;
-    b->p_diffuse = w.up * scale;
+    b->p_diffuse = sum > w.up ? w.up * scale : w.up > 0.0f ? 1.0f : 0.0f; /* exactly 1 when alone */
     b->p_below = w.below * scale;
     b->p_grazing = w.grazing * scale;
     b->p_grazing_below = w.grazing_below * scale;
@@ -92,9 +95,11 @@ KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo) {
     layers_make(mask, &b, s);
     bsdf_seen seen = bsdf_see(mask, &b, wo);
     float mean_loss = albedo_full_mean_loss(b.roughness), through = b.clearcoat.through * b.sheen.through;
-    if (mask & BSDF_ANISOTROPIC) mean_loss *= anisotropy_mean(b.alphas.x, b.brushed.stretch);
-    int by_sum = (mask & (BSDF_COVERED | BSDF_ANISOTROPIC)) != 0;
-    layers_means means = by_sum ? layers_mean(mask, &b) : bsdf_plain_means(&b, mean_loss);
+    int brushed = mask & BSDF_ANISOTROPIC && s->anisotropy > 0.0f;
+    if (mask & BSDF_ANISOTROPIC) mean_loss *= brushed ? anisotropy_mean(b.alphas.x, b.brushed.stretch) : 1.0f;
+    layers_means means = bsdf_plain_means(&b, mean_loss);
+    if (mask & (BSDF_COVERED | BSDF_ANISOTROPIC))
+        means = layers_means_select(layers_are_absent(&b) & !brushed, means, layers_mean(mask, &b));
     bsdf_up_down base = bsdf_make_base(mask, &b, s, opaque, &seen, &means, through);
     vec3 metal = bsdf_make_metal(&b, s, seen.lost, mean_loss, &means, through);
     b.wide = v3_add(v3_add(base.up, metal), base.down);
@@ -348,7 +353,9 @@ KERNEL bsdf_sampled bsdf_sample(unsigned mask, const bsdf *b, float lobe, vec2 d
     bsdf_value v = bsdf_evaluate_toward(mask, b, &t, &top);
     float scale = lives & (v.pdf > 0.0f) ? 1.0f / v.pdf : 0.0f;
     vec3 at_delta = v3_scale(bsdf_at_delta(mask, b, chosen, &met.facet, t.under), lives | hangs ? 1.0f : 0.0f);
-    vec3 multiplier = v3_scale(v.value, scale);
+    /* Lambert without a coat: its albedo, as without BSDF_GLOSSY. */
+    int alone = (b->p_diffuse >= 1.0f) & (fm_max(b->f90, v3_max(b->reflect1)) <= 0.0f);
+    vec3 multiplier = v3_select(alone, b->diffuse, v3_scale(v.value, scale));
     if (mask & BSDF_CLEARCOAT) /* a clear coat has its own horizon */
         multiplier = v3_select(hangs, v3_scale(top.value, 1.0f / fm_max(top.pdf, 1e-30f)), multiplier);
     return (bsdf_sampled){wi, v3_select(delta, at_delta, multiplier), lives & !delta & !hangs ? v.pdf : 0.0f, delta,

@@ -14,6 +14,9 @@ KERNEL frame frame_make(vec3 z) {
 }
 /* x is of unit length and at a right angle to z. */
 KERNEL frame frame_along(vec3 z, vec3 x) { return (frame){x, v3_cross(z, x), z}; }
+KERNEL frame frame_select(int c, frame a, frame b) {
+    return (frame){v3_select(c, a.x, b.x), v3_select(c, a.y, b.y), v3_select(c, a.z, b.z)};
+}
 KERNEL vec3 frame_to_local(const frame *f, vec3 v) { return v3(v3_dot(f->x, v), v3_dot(f->y, v), v3_dot(f->z, v)); }
 KERNEL vec3 frame_to_world(const frame *f, vec3 v) {
     return v3(f->x.x * v.x + f->y.x * v.y + f->z.x * v.z, f->x.y * v.x + f->y.y * v.y + f->z.y * v.z,

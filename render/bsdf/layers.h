@@ -36,6 +36,12 @@ KERNEL layers_pass layers_toward(unsigned mask, const bsdf *b, vec3 wi, int far)
     return layers_through(mask, b, clearcoat_mu, fm_min(fabsf(wi.z), 1.0f), far);
 }
 
+/* Nothing lies on the surface, from either side. */
+KERNEL int layers_are_absent(const bsdf *b) {
+    float lies = b->clearcoat.near + b->clearcoat.far + b->sheen.near + b->sheen.far + b->film.share;
+    return !(lies > 0.0f);
+}
+
 /* On light of one event, in along wi and out along wo. */
 KERNEL float layers_under(const bsdf *b, layers_pass in) {
     return fm_min(in.clearcoat, b->clearcoat.through) * fm_min(in.sheen, b->sheen.through);
@@ -113,6 +119,10 @@ KERNEL void layers_make(unsigned mask, bsdf *b, const surface *s) {
  * what reaches a base through coat and layers, on wo's side and on the far one, and of what layers let through of a
  * metal's multiple scattering. */
 typedef struct layers_means { vec3 near, far; float again; } layers_means;
+
+KERNEL layers_means layers_means_select(int c, layers_means a, layers_means b) {
+    return (layers_means){v3_select(c, a.near, b.near), v3_select(c, a.far, b.far), c ? a.again : b.again};
+}
 
 KERNEL void layers_add_mean(unsigned mask, const bsdf *b, float mu, float weight, layers_means *sum, float *again_weight) {
     float side = sqrtf(0.5f * (1.0f - mu * mu)); /* an azimuth of π/4 stands for all */

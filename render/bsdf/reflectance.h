@@ -76,11 +76,13 @@ KERNEL bsdf_seen bsdf_see(unsigned mask, const bsdf *b, vec3 w) {
         float full = bsdf_full(w.z, b->alpha, b->roughness);
         return (bsdf_seen){w.z, full, 1.0f - full, bsdf_mean_cosine(w.z, b->alpha, b->roughness), 1.0f};
     }
+    int brushed = b->alphas.x > b->alphas.y; /* else as above, to the last bit */
     anisotropy_direction d = anisotropy_stretch(w, b->brushed.stretch);
     anisotropy_factors factors = anisotropy_look_up(anisotropy_table, &b->brushed, d, b->alphas.x);
-    float lost = factors.loss * (1.0f - bsdf_full(d.mu, b->alpha, b->roughness));
-    float faces = factors.cosine * d.length, cosine = faces * bsdf_mean_cosine(d.mu, b->alpha, b->roughness);
-    return (bsdf_seen){d.mu, 1.0f - lost, lost, cosine, fm_min(faces, 1.0f)};
+    float mu = brushed ? d.mu : w.z, faces = brushed ? factors.cosine * d.length : 1.0f;
+    float full = bsdf_full(mu, b->alpha, b->roughness), lost = (1.0f - full) * (brushed ? factors.loss : 1.0f);
+    float cosine = faces * bsdf_mean_cosine(mu, b->alpha, b->roughness);
+    return (bsdf_seen){mu, brushed ? 1.0f - lost : full, lost, cosine, fm_min(faces, 1.0f)};
 }
 
 /* What the dielectric's coat reflects in all. */

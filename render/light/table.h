@@ -46,9 +46,9 @@ typedef struct light_table {
     light *lights;
     uint32_t count;
     uint32_t kinds;        /* bits of light_kind that occur */
-    bool varied;           /* some triangle's emission varies */
     bool bounds;           /* some triangle bounds a solid, and may be hidden */
-    uint32_t *cdf[LIGHT_CHOICES], *guide[LIGHT_CHOICES]; /* NULL: nothing to choose from */
+    uint32_t *cdf[LIGHT_CHOICES], *guide[LIGHT_CHOICES]; /* NULL: there is nothing to choose */
+    bool any[LIGHT_CHOICES]; /* something has a chance; without a cdf it is light 0, the only one */
     uint32_t *distant;     /* the DISTANT ones with an angle: seen by rays that leave the scene */
     uint32_t distant_count;
     environment environment;

@@ -102,7 +102,7 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
     X(float, map_x) X(float, map_y) X(float, map_z) /* tangent-space normal */                                         \
     X(float, tan_x) X(float, tan_y) X(float, tan_z) X(float, tan_w)
 
-/* What the materials of KIND_COATED, KIND_LAYERED and KIND_FILMED say besides. */
+/* What materials with BSDF_LAYERED, or a part of it, say besides. */
 #define LAYER_FIELDS(X)                                                                                                \
     X(float, near_layers) X(float, far_layers)   /* 1: on wo's side, on the far side */                                \
     X(float, clearcoat) X(float, clearcoat_roughness)                                                                  \
@@ -204,6 +204,11 @@ static inline lane_range kinds_range(const batch *b, material_kind first, materi
 
 static inline path_state *batch_state(batch *b) { return &b->states[b->current]; }
 static inline path_hit *batch_hit(batch *b) { return &b->hits[b->current]; }
+
+/* After a sort: the lanes whose kernels have a term. */
+static inline lane_range lanes_with(const batch *b, unsigned term) {
+    return (lane_range){b->kinds[kernel_for(term)].first, b->surfaces};
+}
 
 /* In front of a loop over lanes: iterations are independent. */
 #define LANE_LOOP _Pragma("GCC ivdep") for

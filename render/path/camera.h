@@ -29,9 +29,9 @@ KERNEL vec2 camera_lens(const camera *c, vec2 u) {
     return (vec2){polygon ? w.x * a.cos + w.y * b.cos : disk.x, polygon ? w.x * a.sin + w.y * b.sin : disk.y};
 }
 
-/* Thin lens: what the pinhole sees at the focal distance is where all rays of the pixel meet. */
-KERNEL camera_ray camera_ray_at(const camera *c, float x, float y, vec2 lens_u) {
-    vec2 lens = camera_lens(c, lens_u);
+/* Thin lens: what the pinhole sees at the focal distance is where all rays of the pixel meet. lens: a point of the
+ * aperture. */
+KERNEL camera_ray camera_ray_through(const camera *c, float x, float y, vec2 lens) {
     float px = x * c->half_width, py = y * c->half_height;
     int flat = c->orthographic > 0.5f;
     vec3 at = v3(flat ? px : 0.0f, flat ? py : 0.0f, 0.0f);
@@ -44,6 +44,10 @@ KERNEL camera_ray camera_ray_at(const camera *c, float x, float y, vec2 lens_u) 
     float along = -1.0f / d.z; /* d.z < 0 */
     return (camera_ray){origin, v3_normalize(direction), c->near * along, c->far * along};
 }
+KERNEL camera_ray camera_ray_at(const camera *c, float x, float y, vec2 lens_u) {
+    return camera_ray_through(c, x, y, camera_lens(c, lens_u));
+}
+KERNEL camera_ray camera_ray_of_pinhole(const camera *c, float x, float y) { return camera_ray_through(c, x, y, (vec2){0, 0}); }
 
 /* false: reported. picture: width and height in pixels. */
 bool camera_make(const world *, const kiln_camera *, uint32_t width, uint32_t height, camera *, kiln_report *);

@@ -14,30 +14,31 @@
 static void look_at_surfaces(const path_context *c, batch *b) {
     RUN(fetch, FETCH);
     RUN(surface, SURFACE);
-    if (c->world->filters) RUN(cone_hit, CONE);
+    if (HAS(c->effects, TEXTURE_FILTERING)) RUN(cone_hit, CONE);
     RUN(material, MATERIAL);
-    if (c->world->media_count > 1) RUN(boundary, BOUNDARY);
+    if (HAS(c->effects, SOLIDS)) RUN(boundary, BOUNDARY);
     RUN(normal, NORMAL);
-    if (c->world->scatters) RUN(scattering, FLIGHT);
+    if (HAS(c->effects, SCATTERING)) RUN(scattering, FLIGHT);
 }
 
 void STAGE(trace_samples)(const path_context *c, const path_sample *samples, uint32_t count, batch *b) {
-    const world *w = c->world;
+    const uint64_t effects = c->effects;
+    const bool emits = HAS(effects, AREA_LIGHTS) || HAS(effects, UNLIT);
     STAGE(camera)(c, samples, count, b);
     stage_clock_read(&b->clock, KILN_STAGE_CAMERA);
-    if (w->filters) RUN(cone_start, CONE);
+    if (HAS(effects, TEXTURE_FILTERING)) RUN(cone_start, CONE);
     while (b->n > 0) {
         if (b->depth == 0) RUN(trace, CAMERA_RAYS);
         else RUN(trace, BOUNCE_RAYS);
-        if (w->touches) RUN(touch, TOUCH);
-        if (w->scatters) RUN(flight, FLIGHT);
+        if (HAS(effects, NESTED_MEDIA)) RUN(touch, TOUCH);
+        if (HAS(effects, SCATTERING)) RUN(flight, FLIGHT);
         RUN(escape, ESCAPE);
         RUN(sort, SORT);
         look_at_surfaces(c, b);
-        if (w->absorbs) RUN(absorb, ABSORB);
+        if (HAS(effects, ABSORPTION)) RUN(absorb, ABSORB);
         if ((c->aovs || c->handles) && b->depth == 0) RUN(aovs, AOVS);
-        if (w->emits) RUN(emission, EMISSION);
-        if (w->emits && c->parts) RUN(part_emission, PARTS);
+        if (emits) RUN(emission, EMISSION);
+        if (emits && c->parts) RUN(part_emission, PARTS);
         if (b->depth >= c->max_depth) {
             bool ended = STAGE(limit)(c, b);
             stage_clock_read(&b->clock, KILN_STAGE_LIMIT);
@@ -47,14 +48,14 @@ void STAGE(trace_samples)(const path_context *c, const path_sample *samples, uin
             }
         }
         RUN(random, RANDOM);
-        if (c->light_cdf) {
+        if (c->samples_lights) {
             RUN(light, LIGHT);
             RUN(connect, CONNECT);
             if (c->parts) RUN(part_light, PARTS);
         }
         if (c->parts && b->depth == 0) RUN(part_scatter, PARTS);
         RUN(scatter, SCATTER);
-        if (w->filters) RUN(cone_scatter, CONE);
+        if (HAS(effects, TEXTURE_FILTERING)) RUN(cone_scatter, CONE);
         RUN(close, SORT);
         b->depth++;
     }

@@ -14,6 +14,7 @@
 typedef struct path_context {
     const world *world;
     camera camera;
+    uint64_t effects;       /* bits: those that run, the camera's among them */
     uint64_t media;         /* stack of those around the camera */
     float squeeze;          /* n² there: the camera itself is filled with air, which takes radiance over as L/n² */
     pixel_filter filter;
@@ -21,7 +22,8 @@ typedef struct path_context {
     uint32_t seed;
     int independent;        /* sampler */
     kiln_estimator estimator;
-    const uint32_t *light_cdf, *light_guide; /* NULL: no light is sampled */
+    bool samples_lights;
+    const uint32_t *light_cdf, *light_guide; /* NULL: there is none, or one alone */
     uint32_t max_depth;
     kiln_roulette_kind roulette;
     float roulette_p;
@@ -39,6 +41,12 @@ typedef struct path_sample { uint32_t x, y, n; } path_sample;
 /* The wavelength that a path of a world with a spectrum takes on: of the sample, whenever that is. */
 static inline spectrum_line path_wavelength(const path_context *c, sample_point p) {
     return spectrum_draw(c->world->spectrum, sample_pair(c->independent, p, SAMPLE_WAVELENGTH, 0).x);
+}
+
+/* With which a light of the table is chosen. */
+static inline float path_light_probability(const path_context *c, uint32_t which) {
+    if (c->light_cdf) return distribution_probability(c->light_cdf, which);
+    return c->samples_lights ? 1.0f : 0.0f;
 }
 
 /* Traces count ≤ BATCH_PATHS samples to their end; b->out then holds their results by position in samples. */

@@ -3,19 +3,9 @@
 #define KILN_RENDER_PATH_SHADING_H
 
 #include "render/bsdf/bsdf.h"
+#include "render/bsdf/kernels.h"
 #include "render/path/estimate.h"
 #include "render/path/surface.h"
-
-/* The terms of the BSDF that a kind of material has (material_kind). */
-#define SHADING_MASK_DIFFUSE 0u
-#define SHADING_MASK_GLOSSY ((unsigned)BSDF_GLOSSY)
-#define SHADING_MASK_TRANSMISSIVE ((unsigned)(BSDF_GLOSSY | BSDF_TRANSMISSIVE))
-#define SHADING_MASK_COATED ((unsigned)(BSDF_GLOSSY | BSDF_CLEARCOAT | BSDF_ANISOTROPIC))
-#define SHADING_MASK_FILMED ((unsigned)(BSDF_GLOSSY | BSDF_TRANSMISSIVE | BSDF_LAYERED))
-#define SHADING_MASK_LAYERED (SHADING_MASK_FILMED & ~(unsigned)BSDF_FILM)
-
-/* The kinds of surfaces: of a stage's kernel, an instance for each. What a kind more costs and saves: docs/estimator.md. */
-#define SHADING_KINDS(X) X(DIFFUSE) X(GLOSSY) X(COATED) X(TRANSMISSIVE) X(LAYERED) X(FILMED)
 
 /* A shading point: its frame, its BSDF, and where rays leave from. */
 typedef struct shading {
@@ -27,7 +17,8 @@ typedef struct shading {
 
 KERNEL shading shading_make(unsigned mask, const surface *s, surface_sides sides, vec3 geometric, vec3 normal,
                             vec3 wo) {
-    frame f = mask & BSDF_ANISOTROPIC ? frame_along(normal, s->along) : frame_make(normal);
+    frame f = frame_make(normal);
+    if (mask & BSDF_ANISOTROPIC) f = frame_select(s->anisotropy > 0.0f, frame_along(normal, s->along), f);
     surface local = *s;
     if (mask & BSDF_CLEARCOAT) local.clearcoat_normal = frame_to_local(&f, s->clearcoat_normal);
     return (shading){f, bsdf_make(mask, &local, frame_to_local(&f, wo)), sides, geometric};

@@ -55,8 +55,9 @@ void STAGE(aovs)(const path_context *c, batch *b) {
     if (c->handles) write_handles(c, b);
     if (c->aovs & (1u << KILN_AOV_POSITION | 1u << KILN_AOV_UV)) write_places(c, b);
     if (!(c->aovs & 1u << KILN_AOV_ALBEDO)) return;
-#define WRITE_ALBEDO_KIND(kind) write_albedo(SHADING_MASK_##kind, b, b->kinds[KIND_##kind]);
-    SHADING_KINDS(WRITE_ALBEDO_KIND)
+#define WRITE_ALBEDO(kernel, mask) write_albedo(mask, b, b->kinds[KIND_##kernel]);
+    BSDF_KERNELS(WRITE_ALBEDO)
+#undef WRITE_ALBEDO
     for (uint32_t i = b->surfaces; i < b->n; i++) {
         const float *albedo = c->world->albedo + 3 * (size_t)medium_top(s->media[i]);
         for (int k = 0; k < 3; k++) o->albedo[k][slot_index(s->slot[i])] = albedo[k];

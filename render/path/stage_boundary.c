@@ -47,7 +47,8 @@ void STAGE(boundary)(const path_context *c, batch *b) {
         const world_material *m = &w->materials[x->material[i]];
         uint64_t media = s->media[i];
         x->hidden[i] = 0;
-        x->beyond[i] = w->touches ? h->beyond[i] : medium_cross(media, m->medium, x->front[i] > 0.5f);
+        int entering = x->front[i] > 0.5f;
+        x->beyond[i] = HAS(c->effects, NESTED_MEDIA) ? h->beyond[i] : medium_cross(media, m->medium, entering);
         if (m->medium) bound(c, s, x, i, m);
         else if (media && m->kind != KIND_DIFFUSE) set_eta(x, i, m, m->eta / w->media[medium_top(media)].ior);
     }

@@ -15,6 +15,37 @@ static void disperse(const path_context *c, batch *b) {
     }
 }
 
+/* lens: a constant; where it is 0, no numbers are drawn for a place on it. */
+KERNEL void start_rays(int lens, const path_context *c, batch *b) {
+    path_state *s = batch_state(b);
+    path_scratch *x = &b->scratch;
+    float across = 2.0f / (float)(int32_t)c->width, down = 2.0f / (float)(int32_t)c->height;
+    int independent = c->independent;
+    const camera *cam = &c->camera;
+    const pixel_filter *filter = &c->filter;
+    uint64_t media = c->media;
+    float squeeze = c->squeeze;
+    LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
+        sample_point p = {s->index[i], s->seed[i]};
+        vec2 pixel = sample_pair(independent, p, SAMPLE_PIXEL, 0);
+        float px = x->px[i] + 0.5f + pixel_filter_offset(filter, pixel.x);
+        float py = x->py[i] + 0.5f + pixel_filter_offset(filter, pixel.y);
+        float u = px * across - 1.0f, v = 1.0f - py * down;
+        camera_ray r = lens ? camera_ray_at(cam, u, v, sample_pair(independent, p, SAMPLE_LENS, 0))
+                            : camera_ray_of_pinhole(cam, u, v);
+        s->ox[i] = r.origin.x, s->oy[i] = r.origin.y, s->oz[i] = r.origin.z;
+        s->dx[i] = r.direction.x, s->dy[i] = r.direction.y, s->dz[i] = r.direction.z;
+        x->tnear[i] = r.near;
+        x->tfar[i] = r.far;
+        float alive = s->slot[i] == SLOT_NOWHERE ? 0.0f : 1.0f / squeeze;
+        s->tr[i] = s->tg[i] = s->tb[i] = alive;
+        s->lr[i] = s->lg[i] = s->lb[i] = 0.0f;
+        s->pdf[i] = 0.0f;
+        s->squeeze[i] = squeeze;
+        s->media[i] = media;
+    }
+}
+
 void STAGE(camera)(const path_context *c, const path_sample *samples, uint32_t count, batch *b) {
     path_state *s = batch_state(b);
     path_scratch *x = &b->scratch;
@@ -32,30 +63,8 @@ void STAGE(camera)(const path_context *c, const path_sample *samples, uint32_t c
         x->px[i] = (float)(int32_t)sample->x;
         x->py[i] = (float)(int32_t)sample->y;
     }
-    float across = 2.0f / (float)(int32_t)c->width, down = 2.0f / (float)(int32_t)c->height;
-    int independent = c->independent;
-    const camera *cam = &c->camera;
-    const pixel_filter *filter = &c->filter;
-    uint64_t media = c->media;
-    float squeeze = c->squeeze;
-    LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
-        sample_point p = {s->index[i], s->seed[i]};
-        vec2 pixel = sample_pair(independent, p, SAMPLE_PIXEL, 0);
-        vec2 lens = sample_pair(independent, p, SAMPLE_LENS, 0);
-        float px = x->px[i] + 0.5f + pixel_filter_offset(filter, pixel.x);
-        float py = x->py[i] + 0.5f + pixel_filter_offset(filter, pixel.y);
-        camera_ray r = camera_ray_at(cam, px * across - 1.0f, 1.0f - py * down, lens);
-        s->ox[i] = r.origin.x, s->oy[i] = r.origin.y, s->oz[i] = r.origin.z;
-        s->dx[i] = r.direction.x, s->dy[i] = r.direction.y, s->dz[i] = r.direction.z;
-        x->tnear[i] = r.near;
-        x->tfar[i] = r.far;
-        float alive = s->slot[i] == SLOT_NOWHERE ? 0.0f : 1.0f / squeeze;
-        s->tr[i] = s->tg[i] = s->tb[i] = alive;
-        s->lr[i] = s->lg[i] = s->lb[i] = 0.0f;
-        s->pdf[i] = 0.0f;
-        s->squeeze[i] = squeeze;
-        s->media[i] = media;
-    }
+    if (HAS(c->effects, THIN_LENS)) start_rays(1, c, b);
+    else start_rays(0, c, b);
     disperse(c, b);
-    for (uint32_t i = 0; c->world->media_count > 1 && i < b->n; i++) s->events[i] = 0;
+    for (uint32_t i = 0; HAS(c->effects, SOLIDS) && i < b->n; i++) s->events[i] = 0;
 }

@@ -34,7 +34,7 @@ void STAGE(cone_hit)(const path_context *c, batch *b) {
     }
 }
 
-/* coated: a clear coat may have a normal map of its own: which normal bent the path is not asked. */
+/* coated: clear coats may have normal maps of their own: which normal bent the path is not asked. */
 KERNEL void bounce(int transmissive, int mapped, int coated, batch *b, lane_range lanes) {
     path_state *s = batch_state(b);
     const path_scratch *x = &b->scratch;
@@ -46,7 +46,7 @@ KERNEL void bounce(int transmissive, int mapped, int coated, batch *b, lane_rang
                          .pdf = s->pdf[i],
                          .eta = 1.0f};
         if (mapped) k.bumpy = (x->map_x[i] != 0.0f) | (x->map_y[i] != 0.0f);
-        if (coated) k.bumpy = 1;
+        if (coated) k.bumpy = k.bumpy | (x->clearcoat[i] > 0.0f);
         if (transmissive) {
             int crosses = x->crosses[i] != 0, thin = x->thin[i] > 0.5f;
             k.eta = x->eta[i];
@@ -60,12 +60,10 @@ KERNEL void bounce(int transmissive, int mapped, int coated, batch *b, lane_rang
 }
 
 void STAGE(cone_scatter)(const path_context *c, batch *b) {
-    int mapped = (c->world->slots & 1u << SLOT_NORMAL) != 0;
-    int coated = (c->world->slots & 1u << SLOT_CLEARCOAT_NORMAL) != 0;
-    bounce(0, mapped, 0, b, b->kinds[KIND_DIFFUSE]);
-    bounce(0, mapped, 0, b, b->kinds[KIND_GLOSSY]);
-    bounce(1, mapped, 0, b, b->kinds[KIND_TRANSMISSIVE]);
+    int mapped = HAS(c->effects, NORMAL_MAPS), coated = (c->world->slots & 1u << SLOT_CLEARCOAT_NORMAL) != 0;
+    bounce(0, mapped, 0, b, kinds_range(b, KIND_DIFFUSE, KIND_GLOSSY));
     bounce(0, mapped, coated, b, b->kinds[KIND_COATED]);
+    bounce(1, mapped, 0, b, b->kinds[KIND_TRANSMISSIVE]);
     bounce(1, mapped, coated, b, kinds_range(b, KIND_LAYERED, KIND_FILMED));
     path_state *s = batch_state(b); /* what a medium has scattered may come to a focus anywhere */
     for (uint32_t i = b->surfaces; i < b->n; i++) s->width[i] = s->spread[i] = 0.0f;

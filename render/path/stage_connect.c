@@ -59,10 +59,11 @@ static void attenuate(const path_context *c, batch *b) {
 }
 
 void STAGE(connect)(const path_context *c, batch *b) {
-#define WEIGH_KIND(kind) weigh(SHADING_MASK_##kind, c, b, b->kinds[KIND_##kind]);
-    SHADING_KINDS(WEIGH_KIND)
-    if (c->world->scatters) weigh_scattering(c, b);
-    if (c->world->absorbs) attenuate(c, b);
+#define WEIGH(kernel, mask) weigh(mask, c, b, b->kinds[KIND_##kernel]);
+    BSDF_KERNELS(WEIGH)
+#undef WEIGH
+    if (HAS(c->effects, SCATTERING)) weigh_scattering(c, b);
+    if (HAS(c->effects, ABSORPTION) || HAS(c->effects, SCATTERING)) attenuate(c, b);
 
     path_state *s = batch_state(b);
     path_scratch *x = &b->scratch;

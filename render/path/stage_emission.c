@@ -10,8 +10,7 @@ static void find_lights(const path_context *c, batch *b) {
     for (uint32_t i = 0; i < b->surfaces; i++) {
         uint32_t number = w->triangle_light ? w->triangle_light[h->triangle[i]] : LIGHT_NONE;
         uint32_t which = w->instances[h->instance[i]].light_base + number;
-        bool known = number != LIGHT_NONE && c->light_cdf;
-        x->light_pdf[i] = known ? distribution_probability(c->light_cdf, which) : 0.0f;
+        x->light_pdf[i] = number != LIGHT_NONE ? path_light_probability(c, which) : 0.0f;
         const world_material *m = &w->materials[x->material[i]];
         bool shines = x->front[i] > 0.5f || m->flags & MATERIAL_TWO_SIDED;
         if (!shines) x->emit_r[i] = x->emit_g[i] = x->emit_b[i] = 0.0f;

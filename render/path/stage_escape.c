@@ -20,7 +20,7 @@ static void add_suns(const path_context *c, batch *b, uint32_t i) {
         const light *l = &t->lights[t->distant[k]];
         vec3 off = v3_add(d, l->axis); /* 1 − cos = |d − toward|²/2: exact for small disks */
         if (0.5f * v3_dot(off, off) > l->one_minus_cos) continue;
-        float probability = c->light_cdf ? distribution_probability(c->light_cdf, t->distant[k]) : 0.0f;
+        float probability = path_light_probability(c, t->distant[k]);
         float light_pdf = probability * light_distant_pdf(l->one_minus_cos);
         add(s, i, v3_scale(l->radiance, estimate_hit_weight(c->estimator, s->pdf[i], light_pdf)));
         if (c->parts) STAGE(part_found)(c, b, i, c->parts->of_light[l->owner]);
@@ -37,7 +37,7 @@ static void add_environment(const path_context *c, batch *b, uint32_t count) {
         x->tu[k] = place.x;
         x->tv[k] = place.y;
     }
-    float probability = c->light_cdf ? distribution_probability(c->light_cdf, e->light) : 0.0f;
+    float probability = path_light_probability(c, e->light);
     for (uint32_t k = 0; k < count; k++) {
         uint32_t i = x->list[k], ahead = k + AHEAD_TEXELS;
         if (ahead < count) environment_prefetch_place(e, (vec2){x->tu[ahead], x->tv[ahead]});

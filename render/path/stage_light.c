@@ -9,11 +9,12 @@ static void choose(const path_context *c, batch *b) {
     const light_table *t = &c->world->lights;
     path_scratch *x = &b->scratch;
     for (uint32_t i = 0; i < b->n; i++) {
-        float rest;
-        uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, x->u_light_x[i], x->u_fine[i], &rest);
+        float rest = x->u_light_x[i];
+        uint32_t k = 0;
+        if (c->light_cdf) k = distribution_pick(c->light_cdf, c->light_guide, t->count, rest, x->u_fine[i], &rest);
         const light *l = &t->lights[k];
         x->u_light_x[i] = rest;
-        x->probability[i] = distribution_probability(c->light_cdf, k);
+        x->probability[i] = path_light_probability(c, k);
         x->light[i] = k;
         x->light_kind[i] = (uint32_t)l->kind;
     }
@@ -94,6 +95,6 @@ void STAGE(light)(const path_context *c, batch *b) {
     if (t->kinds == KIND(LIGHT_TRIANGLE)) sample(KIND(LIGHT_TRIANGLE), b);
     else if (t->kinds == KIND(LIGHT_ENVIRONMENT)) sample(KIND(LIGHT_ENVIRONMENT), b);
     else sample(KIND(LIGHT_KINDS) - 1, b);
-    if (t->varied) vary_emission(c->world, b);
+    if (HAS(c->effects, TEXTURED_LIGHTS)) vary_emission(c->world, b);
     if (t->bounds) hide_emission(c->world, b);
 }

@@ -11,7 +11,7 @@ static void start_probe(batch *b, uint32_t i) {
 
 /* How far past the limit a path is: bounces off surfaces, or other steps, of which there may be more. */
 static int32_t excess(const path_context *c, const batch *b, uint32_t i) {
-    if (c->world->media_count <= 1) return (int32_t)(b->depth - c->max_depth);
+    if (!HAS(c->effects, SOLIDS)) return (int32_t)(b->depth - c->max_depth);
     bool met = i < b->surfaces;
     int32_t events = (int32_t)(b->states[b->current].events[i] + (met ? b->scratch.hidden[i] : 0u));
     int32_t bounces = met ? (int32_t)b->depth - events - (int32_t)c->max_depth : -1;

@@ -184,13 +184,12 @@ void STAGE(material)(const path_context *c, batch *b) {
     const path_hit *h = batch_hit(b);
     path_scratch *x = &b->scratch;
     for (uint32_t i = 0; i < b->surfaces; i++) load_diffuse(w, x, i);
-    for (uint32_t i = b->kinds[KIND_GLOSSY].first; i < b->kinds[KIND_FILMED].end; i++) load_glossy(w, x, i);
-    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_FILMED].end; i++)
-        load_transmissive(w, x, i);
+    for (uint32_t i = lanes_with(b, BSDF_GLOSSY).first; i < b->surfaces; i++) load_glossy(w, x, i);
+    for (uint32_t i = lanes_with(b, BSDF_TRANSMISSIVE).first; i < b->surfaces; i++) load_transmissive(w, x, i);
     load_all_layers(w, h, x, b->kinds[KIND_COATED]);
     load_all_layers(w, h, x, kinds_range(b, KIND_LAYERED, KIND_FILMED));
     if (w->colors) tint_by_vertices(w, h, x, b->surfaces);
-    if (w->slots & 1u << SLOT_NORMAL) for (uint32_t i = 0; i < b->surfaces; i++) x->map_x[i] = x->map_y[i] = 0.0f;
+    for (uint32_t i = 0; HAS(c->effects, NORMAL_MAPS) && i < b->surfaces; i++) x->map_x[i] = x->map_y[i] = 0.0f;
     for (int slot = 0; slot < SLOT_COUNT; slot++)
         if (w->slots & 1u << slot) apply_slot(w, h, x, b->surfaces, (material_slot)slot);
 }

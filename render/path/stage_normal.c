@@ -33,7 +33,7 @@ void STAGE(normal)(const path_context *c, batch *b) {
     path_scratch *x = &b->scratch;
     face_clearcoats(s, x, b->kinds[KIND_COATED]);
     face_clearcoats(s, x, kinds_range(b, KIND_LAYERED, KIND_FILMED));
-    if (c->world->slots & 1u << SLOT_NORMAL) apply_maps(x, b->surfaces);
+    if (HAS(c->effects, NORMAL_MAPS)) apply_maps(x, b->surfaces);
     LANE_LOOP (uint32_t i = 0; i < b->surfaces; i++) {
         vec3 wo = {-s->dx[i], -s->dy[i], -s->dz[i]};
         vec3 n = surface_face(v3(x->nx[i], x->ny[i], x->nz[i]), wo);

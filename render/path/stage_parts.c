@@ -57,8 +57,9 @@ void STAGE(part_light)(const path_context *c, batch *b) {
     const path_state *s = batch_state(b);
     const path_scratch *x = &b->scratch;
     if (b->depth == 0) {
-#define RECORD_FIRST_KIND(kind) record_first(SHADING_MASK_##kind, c, b, b->kinds[KIND_##kind]);
-        SHADING_KINDS(RECORD_FIRST_KIND)
+#define RECORD_FIRST(kernel, mask) record_first(mask, c, b, b->kinds[KIND_##kernel]);
+        BSDF_KERNELS(RECORD_FIRST)
+#undef RECORD_FIRST
         for (uint32_t i = b->surfaces; i < b->n; i++)
             if (counts(s, i) && x->visible[i] == RAY_REACHES)
                 parts_record(c->parts, b->parts, slot_index(s->slot[i]), radiance_of(s, i), BOUNCE_DIRECT,
@@ -85,8 +86,9 @@ KERNEL void share_first(unsigned mask, batch *b, lane_range lanes) {
 
 void STAGE(part_scatter)(const path_context *c, batch *b) {
     (void)c;
-#define SHARE_FIRST_KIND(kind) share_first(SHADING_MASK_##kind, b, b->kinds[KIND_##kind]);
-    SHADING_KINDS(SHARE_FIRST_KIND)
+#define SHARE_FIRST(kernel, mask) share_first(mask, b, b->kinds[KIND_##kernel]);
+    BSDF_KERNELS(SHARE_FIRST)
+#undef SHARE_FIRST
     const path_state *s = batch_state(b);
     for (uint32_t i = b->surfaces; i < b->n; i++)
         if (counts(s, i)) *shares_of(b, s, i) = scattered;

@@ -5,11 +5,16 @@ void STAGE(random)(const path_context *c, batch *b) {
     path_scratch *x = &b->scratch;
     uint32_t depth = b->depth;
     int independent = c->independent;
-    if (c->light_cdf) {
+    if (c->samples_lights) {
         LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
             sample_point p = {s->index[i], s->seed[i]};
             vec2 place = sample_pair(independent, p, SAMPLE_LIGHT, depth);
             x->u_light_x[i] = place.x, x->u_light_y[i] = place.y;
+        }
+    }
+    if (c->samples_lights && (HAS(c->effects, MANY_LIGHTS) || HAS(c->effects, ENVIRONMENT))) {
+        LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
+            sample_point p = {s->index[i], s->seed[i]};
             x->u_fine[i] = sample_pair(independent, p, SAMPLE_LIGHT_FINE, depth).x;
         }
     }

@@ -32,9 +32,10 @@ KERNEL void scatter(unsigned mask, const path_context *c, batch *b, lane_range l
 static void cross_media(const world *w, batch *b) {
     path_state *s = batch_state(b);
     const path_scratch *x = &b->scratch;
-    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; i < b->kinds[KIND_FILMED].end; i++)
+    lane_range lanes = lanes_with(b, BSDF_TRANSMISSIVE);
+    for (uint32_t i = lanes.first; i < lanes.end; i++)
         if (x->crosses[i]) s->media[i] = x->beyond[i], s->events[i] += x->hidden[i];
-    for (uint32_t i = b->kinds[KIND_TRANSMISSIVE].first; w->spectrum && i < b->kinds[KIND_FILMED].end; i++)
+    for (uint32_t i = lanes.first; w->spectrum && i < lanes.end; i++)
         if (w->media[medium_top(s->media[i])].spread > 0.0f) s->slot[i] |= SLOT_DISPERSED;
 }
 
@@ -57,8 +58,9 @@ static void scatter_in_media(const path_context *c, batch *b) {
 }
 
 void STAGE(scatter)(const path_context *c, batch *b) {
-#define SCATTER_KIND(kind) scatter(SHADING_MASK_##kind, c, b, b->kinds[KIND_##kind]);
-    SHADING_KINDS(SCATTER_KIND)
-    if (c->world->scatters) scatter_in_media(c, b);
-    if (c->world->media_count > 1) cross_media(c->world, b);
+#define SCATTER(kernel, mask) scatter(mask, c, b, b->kinds[KIND_##kernel]);
+    BSDF_KERNELS(SCATTER)
+#undef SCATTER
+    if (HAS(c->effects, SCATTERING)) scatter_in_media(c, b);
+    if (HAS(c->effects, SOLIDS)) cross_media(c->world, b);
 }

@@ -6,7 +6,7 @@
 static bool is_alive(const path_state *s, uint32_t i) { return s->tr[i] > 0.0f || s->tg[i] > 0.0f || s->tb[i] > 0.0f; }
 
 /* Moves the lanes that order names, with their hits, to the other half of the batch. */
-static void move(const world *w, batch *b, uint32_t count, bool with_hits) {
+static void move(uint64_t effects, batch *b, uint32_t count, bool with_hits) {
     const path_state *from = &b->states[b->current];
     path_state *to = &b->states[1 - b->current];
     const path_hit *from_hit = &b->hits[b->current];
@@ -16,17 +16,17 @@ static void move(const world *w, batch *b, uint32_t count, bool with_hits) {
 #define MOVE_HIT(type, name) \
     LANE_LOOP (uint32_t j = 0; j < count; j++) to_hit->name[j] = from_hit->name[order[j] & ~FILLING];
     PATH_STATE(MOVE_STATE)
-    if (w->media_count > 1) {
+    if (HAS(effects, SOLIDS)) {
         PATH_MEDIA(MOVE_STATE)
         PATH_EVENTS(MOVE_STATE)
     }
-    if (w->filters) {
+    if (HAS(effects, TEXTURE_FILTERING)) {
         PATH_CONE(MOVE_STATE)
     }
     if (with_hits) {
         PATH_HIT(MOVE_HIT)
     }
-    if (with_hits && w->touches) {
+    if (with_hits && HAS(effects, NESTED_MEDIA)) {
         PATH_TOUCH(MOVE_HIT)
     }
     for (uint32_t j = 0; j < count; j++) {
@@ -63,7 +63,7 @@ void STAGE(sort)(const path_context *c, batch *b) {
         b->kinds[k].end = count = fill_group(order, count);
     }
     b->surfaces = b->kinds[KIND_MEDIUM].first;
-    move(w, b, count, true);
+    move(c->effects, b, count, true);
 }
 
 void STAGE(close)(const path_context *c, batch *b) {
@@ -73,5 +73,5 @@ void STAGE(close)(const path_context *c, batch *b) {
         if (is_alive(s, i)) order[count++] = i;
         else batch_flush(b, i);
     }
-    move(c->world, b, fill_group(order, count), false);
+    move(c->effects, b, fill_group(order, count), false);
 }

@@ -52,5 +52,5 @@ void STAGE(surface)(const path_context *c, batch *b) {
         x->tu[i] = p.uv.x, x->tv[i] = p.uv.y;
         put_sides(x, i, surface_flat_sides(&p));
     }
-    if (c->world->smooth) lift(b);
+    if (HAS(c->effects, SMOOTH_NORMALS)) lift(b);
 }

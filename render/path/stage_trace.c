@@ -42,5 +42,5 @@ void STAGE(trace)(const path_context *c, batch *b) {
     ray_lanes rays = {s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, first ? x->tnear : NULL, first ? x->tfar : NULL,
                       coverage, NULL, b->n};
     accel_closest(c->world, &rays, h->t, h->u, h->v, h->triangle, h->instance, first ? &b->camera_rays : &b->bounce_rays);
-    if (first && c->world->single_sided) look_through(c, b, &rays);
+    if (first && HAS(c->effects, CULLING)) look_through(c, b, &rays);
 }

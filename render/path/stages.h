@@ -5,6 +5,7 @@
 #ifndef KILN_RENDER_PATH_STAGES_H
 #define KILN_RENDER_PATH_STAGES_H
 
+#include "render/effects/plan.h"
 #include "render/path/path.h"
 
 #ifndef KILN_ISA

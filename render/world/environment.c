@@ -96,7 +96,9 @@ static bool build_distribution(environment *e, kiln_arena *arena) {
 bool environment_build(world *w, const kiln_scene *scene, const kiln_decoding *decoding, kiln_report *report) {
     environment *e = &w->lights.environment;
     if (!load(e, &w->arena, scene, decoding, report)) return false;
-    e->present = true;
     e->rotation_turns = to_turns(scene->environment.rotation_rad);
-    return build_distribution(e, &w->arena) || report_no_memory(report, "building the environment");
+    if (!build_distribution(e, &w->arena)) return report_no_memory(report, "building the environment");
+    e->present = e->total > 0;
+    if (!e->present) plan_dismiss(&w->plan, KILN_EFFECT_ENVIRONMENT);
+    return true;
 }

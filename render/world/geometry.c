@@ -71,12 +71,11 @@ static void make_shape(void *context, size_t index, uint32_t thread) {
     if (b->shapes[index].mesh && !shape_make(&b->shapes[index], b->world)) atomic_store(&b->failed, true);
 }
 
-/* Rounding leaves 2⁻⁵² of what was turned or stretched before it was flattened; in float, 2⁻²³. */
+/* In float, rounding leaves 2⁻²³ of what was turned or stretched before it was flattened. */
 static presence presence_of(const mat4 *m) {
     dvec3 x = d3_load(m->m), y = d3_load(m->m + 4), z = d3_load(m->m + 8);
-    double a = d3_length(x), b = d3_length(y), c = d3_length(z), longest = fmax(a, fmax(b, c));
-    double area = fmax(d3_length(d3_cross(y, z)), fmax(d3_length(d3_cross(z, x)), d3_length(d3_cross(x, y))));
-    if (!(area > 0x1p-50 * longest * longest)) return ABSENT;
+    double a = d3_length(x), b = d3_length(y), c = d3_length(z);
+    if (!transform_shows(m)) return ABSENT;
     double volume = fabs(mat4_determinant(m));
     bool invertible = volume > 0x1p-20 * a * b * c && volume > (double)FLT_MIN && volume < 1 / (double)FLT_MIN;
     return invertible ? LIKE_THE_OTHERS : ALONE;
@@ -190,8 +189,8 @@ static bool allocate(world *w, uint64_t vertices, uint64_t triangles) {
     w->triangles = ARENA_ARRAY(&w->arena, uint32_t, 3 * triangles + 4);
     w->triangle_material = ARENA_ARRAY(&w->arena, uint32_t, triangles + 1);
     bool done = w->vertices && w->triangles && w->triangle_material;
-    if (w->wants_tangents) done = done && (w->tangents = ARENA_ARRAY(&w->arena, float, 4 * vertices + 4));
-    if (w->has_colors) done = done && (w->colors = ARENA_ARRAY(&w->arena, float, 4 * vertices + 4));
+    if (world_wants_tangents(w)) done = done && (w->tangents = ARENA_ARRAY(&w->arena, float, 4 * vertices + 4));
+    if (HOLDS(w, VERTEX_COLORS)) done = done && (w->colors = ARENA_ARRAY(&w->arena, float, 4 * vertices + 4));
     for (uint32_t k = 1; k < w->uv_set_count; k++)
         done = done && (w->uvs[k] = ARENA_ARRAY(&w->arena, float, 2 * vertices + 2));
     return done;
@@ -338,21 +337,11 @@ static void warn_of_missing_tangents(const build *b, kiln_report *report) {
 
 /* A scene keeps motion that the renderer does not show. */
 static void warn_of_motion(const build *b, kiln_report *report) {
-    uint32_t moving = 0;
-    for (uint32_t i = 0; i < b->scene->instance_count; i++) {
-        const kiln_instance *instance = &b->scene->instances[i];
-        moving += instance->time_count > 1 || scene_mesh(b->scene, instance->mesh)->time_count > 1;
-    }
-    if (moving)
+    const kiln_effect_use *motion = &b->world->plan.uses[KILN_EFFECT_MOTION];
+    if (motion->called)
         report_warning(report, KILN_CODE_IGNORED, NULL, "give them one time sample, the one to be seen",
                        "%u of %u instances move while the shutter is open: they are shown at their first time sample",
-                       moving, b->scene->instance_count);
-}
-
-static bool some_mesh_has(const build *b, kiln_primvar_kind kind) {
-    for (uint32_t i = 0; i < b->scene->mesh_count; i++)
-        if (b->shapes[i].mesh && mesh_primvar(b->shapes[i].mesh, kind, 0)) return true;
-    return false;
+                       motion->caller_count, b->scene->instance_count);
 }
 
 static bool run(build *b, uint32_t threads, kiln_report *report) {
@@ -360,10 +349,8 @@ static bool run(build *b, uint32_t threads, kiln_report *report) {
     b->presences = array_alloc(b->scene->instance_count, sizeof *b->presences);
     if (!b->presences) return report_no_memory(report, "building geometry");
     choose_baking(b);
-    w->has_colors = some_mesh_has(b, KILN_PRIMVAR_COLOR);
-    w->smooth = some_mesh_has(b, KILN_PRIMVAR_NORMAL);
     warn_of_motion(b, report);
-    if (w->wants_tangents) warn_of_missing_tangents(b, report);
+    if (world_wants_tangents(w)) warn_of_missing_tangents(b, report);
     threads_for(threads, b->scene->mesh_count, make_shape, b);
     b->placements = array_alloc((size_t)b->scene->instance_count + b->prototype_count, sizeof *b->placements);
     b->prototype_centers = array_alloc(b->prototype_count, sizeof *b->prototype_centers);
@@ -378,7 +365,8 @@ static bool run(build *b, uint32_t threads, kiln_report *report) {
     return (list_instances(b) && list_objects(b)) || report_no_memory(report, "building geometry");
 }
 
-bool world_build_geometry(world *w, const kiln_scene *scene, uint32_t threads, kiln_report *report) {
+bool world_build_geometry(world *w, const reduced_scene *reduced, uint32_t threads, kiln_report *report) {
+    const kiln_scene *scene = reduced->scene;
     build b = {.world = w, .scene = scene, .shapes = array_alloc(scene->mesh_count, sizeof *b.shapes)};
     bool done = b.shapes ? run(&b, threads, report) : report_no_memory(report, "building geometry");
     for (uint32_t i = 0; b.shapes && i < scene->mesh_count; i++) shape_free(&b.shapes[i]);

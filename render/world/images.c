@@ -78,13 +78,13 @@ const void *image_levels(const world_image *image, kiln_transfer transfer, texel
 /* The pyramid for a use, unless it is there already. */
 static bool make_levels(world_image *image, kiln_transfer transfer, texel_domain domain, const float *curve,
                         kiln_report *report) {
-    void **levels = &image->levels[levels_of(image, transfer, domain)];
+    uint32_t at = levels_of(image, transfer, domain);
+    void **levels = &image->levels[at];
     texture_grid grid = {.width = (int32_t)image->width, .height = (int32_t)image->height, .curve = curve};
     grid.texels = image_texels(image, transfer, domain, &grid.format);
     if (*levels || (grid.format == KILN_PIXELS_U8 && !mips_take(curve))) return true;
-    size_t bytes;
-    *levels = mips_make(&grid, &bytes);
-    image->bytes += bytes;
+    *levels = mips_make(&grid, &image->level_bytes[at]);
+    image->bytes += image->level_bytes[at];
     return *levels || report_no_memory(report, "filtering textures");
 }
 
@@ -113,6 +113,11 @@ static float *to_floats(const kiln_image *image, kiln_transfer transfer, texel_d
     return rgba;
 }
 
+/* The size of an array of texels. */
+static size_t texels_bytes(const world_image *image, uint32_t place) {
+    return 4 * (size_t)image->width * image->height * (place ? sizeof(float) : format_bytes(image->format));
+}
+
 /* Texels for a use, unless they are there already. */
 static bool make_texels(world_image *image, const kiln_image *pixels, kiln_transfer transfer, texel_domain domain,
                         const kiln_where *where, kiln_report *report) {
@@ -120,7 +125,7 @@ static bool make_texels(world_image *image, const kiln_image *pixels, kiln_trans
     size_t texels = (size_t)pixels->width * pixels->height, outside = 0;
     if (image->texels[place]) return true;
     image->texels[place] = place ? (void *)to_floats(pixels, transfer, domain, &outside) : expand(pixels);
-    image->bytes += 4 * texels * (place ? sizeof(float) : format_bytes(pixels->format));
+    image->bytes += texels_bytes(image, place);
     if (outside)
         report_warning(report, KILN_CODE_RANGE, where, "clean the picture",
                        "%zu of %zu texels lie outside %s: they are clamped", outside, texels,
@@ -128,11 +133,66 @@ static bool make_texels(world_image *image, const kiln_image *pixels, kiln_trans
     return image->texels[place] || report_no_memory(report, "decoding textures");
 }
 
-static bool make_all_texels(world_image *image, const kiln_image *pixels, float curves[KILN_TRANSFER_COUNT][256],
-                            const kiln_where *where, kiln_report *report) {
+/* Extremes of n values, which come in turns of a divisor of SPAN channels: SPAN at once, for compilers vectorise that. */
+enum { SPAN = 48 };
+#define EXTREMES(type, largest)                                                                                        \
+    static void extremes_##type(const type *values, size_t n, uint32_t channels, float low[4], float high[4]) {        \
+        type least[SPAN], most[SPAN] = {0};                                                                            \
+        for (uint32_t k = 0; k < SPAN; k++) least[k] = largest;                                                        \
+        for (; n >= SPAN; n -= SPAN, values += SPAN)                                                                   \
+            for (uint32_t k = 0; k < SPAN; k++) {                                                                      \
+                least[k] = values[k] < least[k] ? values[k] : least[k];                                                \
+                most[k] = values[k] > most[k] ? values[k] : most[k];                                                   \
+            }                                                                                                          \
+        for (uint32_t k = 0; k < n; k++) {                                                                             \
+            least[k] = values[k] < least[k] ? values[k] : least[k];                                                    \
+            most[k] = values[k] > most[k] ? values[k] : most[k];                                                       \
+        }                                                                                                              \
+        for (uint32_t k = 0; k < SPAN; k++) {                                                                          \
+            low[k % channels] = fminf(low[k % channels], (float)least[k]);                                             \
+            high[k % channels] = fmaxf(high[k % channels], (float)most[k]);                                            \
+        }                                                                                                              \
+    }
+EXTREMES(uint8_t, UINT8_MAX)
+EXTREMES(uint16_t, UINT16_MAX)
+EXTREMES(float, INFINITY)
+
+/* What is not a number counts as 0, as decoding has it: the picture may hold both. */
+static void heed_nans(const kiln_image *pixels, float low[4], float high[4]) {
+    const float *values = pixels->pixels;
+    for (size_t i = 0; i < (size_t)pixels->width * pixels->height * pixels->channels; i++) {
+        uint32_t k = (uint32_t)(i % pixels->channels);
+        if (isfinite(values[i])) continue;
+        low[k] = 0;
+        if (values[i] > 0) high[k] = INFINITY;
+    }
+}
+
+/* The least and the largest of each channel. */
+static void look_at(world_image *image, const kiln_image *pixels) {
+    size_t n = (size_t)pixels->width * pixels->height * pixels->channels;
+    float low[4] = {INFINITY, INFINITY, INFINITY, INFINITY}, high[4] = {0}, most = 1;
+    if (pixels->format == KILN_PIXELS_U8) extremes_uint8_t(pixels->pixels, n, pixels->channels, low, high), most = 255;
+    else if (pixels->format == KILN_PIXELS_U16)
+        extremes_uint16_t(pixels->pixels, n, pixels->channels, low, high), most = 65535;
+    else {
+        extremes_float(pixels->pixels, n, pixels->channels, low, high);
+        heed_nans(pixels, low, high);
+    }
+    bool grey = pixels->channels < 3, alpha = pixels->channels == 2 || pixels->channels == 4;
+    for (uint32_t k = 0; k < 4; k++) {
+        uint32_t from = k < 3 ? grey ? 0 : k : pixels->channels - 1;
+        image->low[k] = k == 3 && !alpha ? 1 : fmaxf(low[from], 0) / most;
+        image->high[k] = k == 3 && !alpha ? 1 : fmaxf(high[from], 0) / most;
+    }
     image->width = pixels->width;
     image->height = pixels->height;
     image->format = pixels->format;
+    image->looked_at = true;
+}
+
+static bool make_all_texels(world_image *image, const kiln_image *pixels, float curves[KILN_TRANSFER_COUNT][256],
+                            const kiln_where *where, kiln_report *report) {
     for (int d = 0; d < TEXEL_DOMAINS; d++)
         for (int t = 0; t < KILN_TRANSFER_COUNT; t++) {
             uint32_t use = image_use((kiln_transfer)t, (texel_domain)d);
@@ -145,10 +205,9 @@ static bool make_all_texels(world_image *image, const kiln_image *pixels, float 
 }
 
 typedef struct decode_job {
-    const world_image *images;
-    world_image *into; /* the same; NULL: nothing is kept */
+    world_image *images;
     const kiln_scene *scene;
-    float (*curves)[256];
+    float (*curves)[256]; /* NULL: no pixel is kept */
     kiln_report *report;
     atomic_bool failed;
 } decode_job;
@@ -156,7 +215,8 @@ typedef struct decode_job {
 static void decode_one(void *context, size_t index, uint32_t thread) {
     (void)thread;
     decode_job *job = context;
-    if (!job->images[index].wanted || (job->into && atomic_load(&job->failed))) return;
+    world_image *image = &job->images[index];
+    if (!image->wanted || (job->curves && atomic_load(&job->failed))) return;
     kiln_image pixels;
     bool owned;
     if (!pixels_of(&job->scene->images[index], &pixels, &owned, job->report)) {
@@ -164,7 +224,8 @@ static void decode_one(void *context, size_t index, uint32_t thread) {
         return;
     }
     kiln_where where = where_root(scene_image_place(&job->scene->images[index]));
-    if (job->into && !make_all_texels(&job->into[index], &pixels, job->curves, &where, job->report))
+    look_at(image, &pixels);
+    if (job->curves && !make_all_texels(image, &pixels, job->curves, &where, job->report))
         atomic_store(&job->failed, true);
     if (owned) image_free(&pixels);
 }
@@ -176,11 +237,36 @@ static bool decode(decode_job *job, uint32_t threads) {
 
 bool images_decode(world_image *images, const kiln_scene *scene, float curves[KILN_TRANSFER_COUNT][256],
                    uint32_t threads, kiln_report *report) {
-    return decode(&(decode_job){images, images, scene, curves, report, false}, threads);
+    return decode(&(decode_job){images, scene, curves, report, false}, threads);
 }
 
-bool images_check(const world_image *images, const kiln_scene *scene, uint32_t threads, kiln_report *report) {
-    return decode(&(decode_job){images, NULL, scene, NULL, report, false}, threads);
+bool images_look(world_image *images, const kiln_scene *scene, uint32_t threads, kiln_report *report) {
+    return decode(&(decode_job){images, scene, NULL, report, false}, threads);
+}
+
+void images_drop(world_image *images, uint32_t count) {
+    for (uint32_t i = 0; i < count; i++) {
+        world_image *image = &images[i];
+        bool texels[1 + 2 * TEXEL_DOMAINS] = {0}, levels[KILN_TRANSFER_COUNT + 2 * TEXEL_DOMAINS] = {0};
+        for (int d = 0; d < TEXEL_DOMAINS; d++)
+            for (int t = 0; t < KILN_TRANSFER_COUNT; t++) {
+                uint32_t use = image_use((kiln_transfer)t, (texel_domain)d);
+                texels[place_of(image->format, (kiln_transfer)t, (texel_domain)d)] |= (image->wanted & use) != 0;
+                levels[levels_of(image, (kiln_transfer)t, (texel_domain)d)] |= (image->filtered & use) != 0;
+            }
+        for (uint32_t k = 0; k < 1 + 2 * TEXEL_DOMAINS; k++) {
+            if (texels[k] || !image->texels[k]) continue;
+            image->bytes -= texels_bytes(image, k);
+            free(image->texels[k]);
+            image->texels[k] = NULL;
+        }
+        for (uint32_t k = 0; k < KILN_TRANSFER_COUNT + 2 * TEXEL_DOMAINS; k++) {
+            if (levels[k] || !image->levels[k]) continue;
+            image->bytes -= image->level_bytes[k];
+            free(image->levels[k]);
+            image->levels[k] = NULL;
+        }
+    }
 }
 
 void images_free(world_image *images, uint32_t count) {

@@ -21,9 +21,12 @@ typedef struct world_image {
     kiln_pixel_format format;
     void *texels[1 + 2 * TEXEL_DOMAINS]; /* [0]: codes */
     void *levels[KILN_TRANSFER_COUNT + 2 * TEXEL_DOMAINS]; /* pyramids: of 8-bit codes by curve, of others by array */
+    size_t level_bytes[KILN_TRANSFER_COUNT + 2 * TEXEL_DOMAINS];
     size_t bytes;                        /* of all */
     uint32_t wanted;                     /* bits of image_use */
     uint32_t filtered;                   /* those of them that want a pyramid */
+    bool looked_at;                      /* the rest is known: */
+    float low[4], high[4];               /* of each channel's codes, integers as shares of the largest; not below 0 */
 } world_image;
 
 static inline uint32_t image_use(kiln_transfer transfer, texel_domain domain) {
@@ -35,12 +38,14 @@ const void *image_texels(const world_image *, kiln_transfer, texel_domain, kiln_
 /* The pyramid of a use that was to be filtered; NULL: it has none. */
 const void *image_levels(const world_image *, kiln_transfer, texel_domain);
 
-/* Decodes all images with wanted != 0, in parallel. images has one entry per image of the scene. Warns of floats outside
- * the domain. false: reported. */
+/* Decodes all images with wanted != 0, in parallel, and looks at them. images has one entry per image of the scene. Warns
+ * of floats outside the domain. false: reported. */
 bool images_decode(world_image *images, const kiln_scene *, float curves[KILN_TRANSFER_COUNT][256], uint32_t threads,
                    kiln_report *);
-/* The same for the errors alone: all of them, and no pixel is kept. */
-bool images_check(const world_image *images, const kiln_scene *, uint32_t threads, kiln_report *);
+/* The same, but no pixel is kept: for the errors, all of them, and for what there is to see. */
+bool images_look(world_image *images, const kiln_scene *, uint32_t threads, kiln_report *);
+/* Frees what is wanted no more, now that wanted and filtered have fewer bits. */
+void images_drop(world_image *images, uint32_t count);
 void images_free(world_image *images, uint32_t count);
 
 /* A picture as RGB floats (3 a pixel) in the working space; owned by the caller. */

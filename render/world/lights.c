@@ -10,6 +10,7 @@
 typedef struct build {
     world *world;
     const kiln_scene *scene;
+    uint64_t removed;
     const kiln_decoding *decoding;
     float *power;    /* by light: what it gives off, up to a constant */
     uint32_t *group; /* by light: which belong together: the triangles of a material, a punctual light, the environment */
@@ -180,12 +181,11 @@ static void measure_power(void *context, size_t chunk, uint32_t thread) {
     }
 }
 
-/* A way of choosing among lights, unless nothing has a chance. */
+/* A way of choosing among lights, unless nothing has a chance, or there is one alone. */
 static bool add_choice(build *b, light_choice choice, const float *weights) {
     light_table *t = &b->world->lights;
-    bool any = false;
-    for (uint32_t i = 0; i < t->count; i++) any |= weights[i] > 0;
-    if (!any) return true;
+    for (uint32_t i = 0; i < t->count; i++) t->any[choice] |= weights[i] > 0;
+    if (!t->any[choice] || (t->count == 1 && !HOLDS(b->world, MANY_LIGHTS))) return true;
     t->cdf[choice] = ARENA_ARRAY(&b->world->arena, uint32_t, (size_t)t->count + 1);
     t->guide[choice] = ARENA_ARRAY(&b->world->arena, uint32_t, t->count);
     if (!t->cdf[choice] || !t->guide[choice]) return false;
@@ -232,6 +232,15 @@ static bool build_choices(build *b) {
     return add_choice(b, CHOOSE_POINTS, b->power);
 }
 
+/* Kinds of lights that kernels are to be ready for though the scene has none. */
+static uint32_t imposed_kinds(uint64_t effects) {
+    uint32_t kinds = HAS(effects, AREA_LIGHTS) ? 1u << LIGHT_TRIANGLE : 0;
+    if (HAS(effects, PUNCTUAL_LIGHTS)) kinds |= 1u << LIGHT_POINT | 1u << LIGHT_SPOT | 1u << LIGHT_DISTANT;
+    if (HAS(effects, SUNS)) kinds |= 1u << LIGHT_DISTANT;
+    if (HAS(effects, ENVIRONMENT)) kinds |= 1u << LIGHT_ENVIRONMENT;
+    return kinds;
+}
+
 static bool add_all(build *b, uint64_t triangles) {
     world *w = b->world;
     light_table *t = &w->lights;
@@ -248,25 +257,31 @@ static bool add_all(build *b, uint64_t triangles) {
     if (triangles) add_triangles(b);
     t->count = (uint32_t)triangles;
     for (uint32_t i = 0; i < b->scene->light_count; i++) {
+        if (!(light_effects(&b->scene->lights[i]) & ~b->removed)) continue;
         light l = punctual_light(b, &b->scene->lights[i]);
         l.owner = i + 1;
         if (l.kind == LIGHT_DISTANT && l.one_minus_cos > 0) t->distant[t->distant_count++] = t->count;
         b->group[t->count] = b->groups++;
         t->lights[t->count++] = l;
     }
-    if (b->scene->has_environment) {
-        if (!environment_build(w, b->scene, b->decoding, b->report)) return false;
+    if (HAS(w->plan.called, ENVIRONMENT) && !environment_build(w, b->scene, b->decoding, b->report)) return false;
+    if (t->environment.present) {
         t->environment.light = t->count;
         b->group[t->count] = b->groups++;
         t->lights[t->count++] = (light){.kind = LIGHT_ENVIRONMENT};
     }
-    for (uint32_t i = 0; i < t->count; i++) t->kinds |= 1u << t->lights[i].kind;
+    for (uint32_t i = 0; i < t->count; i++) {
+        t->kinds |= 1u << t->lights[i].kind;
+        t->bounds |= t->lights[i].medium != 0;
+    }
+    t->kinds |= imposed_kinds(effects_imposed(&w->plan.asked));
     return build_choices(b) || report_no_memory(b->report, "building lights");
 }
 
-bool world_build_lights(world *w, const kiln_scene *scene, const kiln_decoding *decoding, uint32_t threads,
+bool world_build_lights(world *w, const reduced_scene *scene, const kiln_decoding *decoding, uint32_t threads,
                         kiln_report *report) {
-    build b = {.world = w, .scene = scene, .decoding = decoding, .threads = threads, .report = report};
+    build b = {.world = w, .scene = scene->scene, .removed = scene->removed, .decoding = decoding, .threads = threads,
+               .report = report};
     uint64_t triangles;
     bool done = count_triangles(&b, &triangles) && add_all(&b, triangles);
     free(b.power);

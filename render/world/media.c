@@ -58,14 +58,14 @@ static box material_box(const kiln_mesh *m, kiln_id material) {
 
 /* The solid materials of a mesh, each once, into list; their number. stamps: of all materials, marked with the mesh's
  * number, which starts at 1. */
-static uint32_t mesh_solids(const kiln_scene *scene, uint32_t mesh, uint32_t *stamps, kiln_id *list) {
-    const kiln_mesh *m = scene_mesh(scene, mesh);
+static uint32_t mesh_solids(const reduced_scene *scene, uint32_t mesh, uint32_t *stamps, kiln_id *list) {
+    const kiln_mesh *m = scene_mesh(scene->scene, mesh);
     uint32_t count = 0, faces = m->face_materials ? m->face_count : 1;
     for (uint32_t f = 0; f < faces; f++) {
         kiln_id id = m->face_materials ? m->face_materials[f] : m->material;
         if (stamps[id] == mesh) continue;
         stamps[id] = mesh;
-        if (material_is_solid(scene_material(scene, id))) list[count++] = id;
+        if (material_is_solid(reduced_material(scene, id))) list[count++] = id;
     }
     return count;
 }
@@ -104,15 +104,12 @@ static vec3 albedo_of(const kiln_decoding *decoding, const kiln_material *m) {
 static void set_medium(world *w, const kiln_decoding *decoding, const kiln_material *from, uint32_t number) {
     world_medium *m = &w->media[number];
     vec3 sigma = extinction_of(w, decoding, from);
-    bool disperses = from->layers & KILN_LAYER_DISPERSION && from->dispersion > 0 && from->ior > 1;
     *m = (world_medium){.ior = from->ior > 0 ? fminf(from->ior, WORLD_IOR_MAX) : WORLD_IOR_MAX};
-    if (disperses) m->spread = fminf((m->ior - 1.0f) * from->dispersion / 20.0f, WORLD_IOR_MAX);
+    if (from->layers & KILN_LAYER_DISPERSION) m->spread = fminf((m->ior - 1.0f) * from->dispersion / 20.0f, WORLD_IOR_MAX);
     v3_store(w->extinction + 3 * (size_t)number, sigma);
-    w->absorbs |= v3_max(sigma) > 0;
     vec3 albedo = from->layers & KILN_LAYER_VOLUME_SCATTER ? albedo_of(decoding, from) : v3_splat(0);
     m->scatters = v3_max(albedo) > 0 && v3_max(sigma) > 0;
     m->g = from->scatter_anisotropy;
-    w->scatters |= m->scatters;
     v3_store(w->albedo + 3 * (size_t)number, albedo);
     v3_store(w->absorption + 3 * (size_t)number, m->scatters ? v3_splat(0) : sigma);
 }
@@ -144,26 +141,38 @@ static bool boxes_meet(const box *a, const box *b) {
 /* Copies that are compared one with another; where there are more, some are taken to touch. */
 enum { COMPARED = 512 };
 
-static bool some_touch(const kiln_scene *scene, const uint32_t *solids) {
+static kiln_id find_touching(const kiln_scene *scene, const uint32_t *solids) {
     box boxes[COMPARED];
     int count = 0;
     for (uint32_t i = 0; i < scene->instance_count; i++) {
         const kiln_instance *copy = &scene->instances[i];
         uint32_t own = solids[copy->mesh - 1];
-        if (own > 1 || (own && count == COMPARED)) return true;
+        if (own > 1 || (own && count == COMPARED)) return i + 1;
         if (!own) continue;
         boxes[count] = placed_box(scene_mesh(scene, copy->mesh), &copy->transforms[0]);
         for (int k = 0; k < count; k++)
-            if (boxes_meet(&boxes[k], &boxes[count])) return true;
+            if (boxes_meet(&boxes[k], &boxes[count])) return i + 1;
         count++;
     }
-    return false;
+    return 0;
+}
+
+bool media_find_touching(const reduced_scene *scene, kiln_id *instance, kiln_report *report) {
+    uint32_t *solids = array_alloc(scene->scene->mesh_count, sizeof *solids);
+    uint32_t *stamps = array_alloc((size_t)scene->scene->material_count + 1, sizeof *stamps);
+    kiln_id *found = array_alloc((size_t)scene->scene->material_count + 1, sizeof *found);
+    bool room = solids && stamps && found;
+    for (uint32_t i = 0; room && i < scene->scene->mesh_count; i++)
+        if (scene->shown[i]) solids[i] = mesh_solids(scene, i + 1, stamps, found);
+    *instance = room ? find_touching(scene->scene, solids) : 0;
+    free(solids);
+    free(stamps);
+    free(found);
+    return room || report_no_memory(report, "comparing solids");
 }
 
 static bool set_spectrum(world *w, const kiln_decoding *decoding) {
-    bool disperses = false;
-    for (uint32_t i = 0; i < w->media_count; i++) disperses |= w->media[i].spread > 0;
-    if (!disperses) return true;
+    if (!HOLDS(w, DISPERSION)) return true;
     w->spectrum = ARENA_ARRAY(&w->arena, float, SPECTRUM_FLOATS);
     if (w->spectrum) spectrum_make(decoding->matrix[KILN_TRANSFER_LINEAR], w->spectrum);
     return w->spectrum != NULL;
@@ -184,34 +193,32 @@ static void warn_if_open(const kiln_scene *scene, const kiln_mesh *m, kiln_id ma
 typedef struct scratch {
     candidate *list;
     double *scales, *sizes; /* of meshes; of materials: of the largest copy */
-    uint32_t *solids;       /* of meshes: how many solid materials they have */
     uint32_t *stamps;       /* of materials */
     kiln_id *found;
 } scratch;
 
 /* Every solid of every mesh: how large it is, and whether it is closed, as it must be. */
-static void look_at_meshes(const kiln_scene *scene, scratch *s, kiln_report *report) {
-    find_scales(scene, s->scales);
-    for (uint32_t i = 0; i < scene->mesh_count; i++) {
-        const kiln_mesh *m = &scene->meshes[i];
+static void look_at_meshes(const reduced_scene *scene, scratch *s, kiln_report *report) {
+    find_scales(scene->scene, s->scales);
+    for (uint32_t i = 0; i < scene->scene->mesh_count; i++) {
+        const kiln_mesh *m = &scene->scene->meshes[i];
         if (!(s->scales[i] > 0)) continue;
-        s->solids[i] = mesh_solids(scene, i + 1, s->stamps, s->found);
-        for (uint32_t k = 0; k < s->solids[i]; k++) {
+        uint32_t solids = mesh_solids(scene, i + 1, s->stamps, s->found);
+        for (uint32_t k = 0; k < solids; k++) {
             kiln_id id = s->found[k];
             box part = material_box(m, id);
             s->sizes[id] = fmax(s->sizes[id], box_volume(&part) * s->scales[i]);
-            warn_if_open(scene, m, id, report);
+            warn_if_open(scene->scene, m, id, report);
         }
     }
 }
 
-static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decoding, const bool *used, scratch *s,
-                  kiln_report *report) {
+static bool build(world *w, const reduced_scene *scene, const kiln_decoding *decoding, scratch *s, kiln_report *report) {
     candidate *list = s->list;
     int n = 0;
     for (uint32_t i = 0; i < w->material_count; i++) {
-        const kiln_material *m = scene_material(scene, i);
-        if (used[i] && material_is_solid(m)) list[n++] = (candidate){.material = i, .priority = m->priority};
+        const kiln_material *m = reduced_material(scene, i);
+        if (scene->used[i] && material_is_solid(m)) list[n++] = (candidate){.material = i, .priority = m->priority};
     }
     if (n) look_at_meshes(scene, s, report);
     for (int i = 0; i < n; i++) list[i].size = s->sizes[list[i].material];
@@ -228,26 +235,22 @@ static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decodi
     w->media_count = (uint32_t)n + 1;
     for (int i = 0; i < n; i++) {
         w->materials[list[i].material].medium = (uint32_t)i + 1;
-        set_medium(w, decoding, scene_material(scene, list[i].material), (uint32_t)i + 1);
+        set_medium(w, decoding, reduced_material(scene, list[i].material), (uint32_t)i + 1);
     }
-    w->touches = n > 0 && some_touch(scene, s->solids);
     return set_spectrum(w, decoding) || report_no_memory(report, "building media");
 }
 
-bool world_build_media(world *w, const kiln_scene *scene, const kiln_decoding *decoding, const bool *used,
-                       kiln_report *report) {
+bool world_build_media(world *w, const reduced_scene *scene, const kiln_decoding *decoding, kiln_report *report) {
     scratch s = {.list = array_alloc(w->material_count, sizeof *s.list),
-                 .scales = array_alloc(scene->mesh_count, sizeof *s.scales),
+                 .scales = array_alloc(scene->scene->mesh_count, sizeof *s.scales),
                  .sizes = array_alloc(w->material_count, sizeof *s.sizes),
-                 .solids = array_alloc(scene->mesh_count, sizeof *s.solids),
                  .stamps = array_alloc(w->material_count, sizeof *s.stamps),
                  .found = array_alloc(w->material_count, sizeof *s.found)};
-    bool room = s.list && s.scales && s.sizes && s.solids && s.stamps && s.found;
-    bool done = room ? build(w, scene, decoding, used, &s, report) : report_no_memory(report, "building media");
+    bool room = s.list && s.scales && s.sizes && s.stamps && s.found;
+    bool done = room ? build(w, scene, decoding, &s, report) : report_no_memory(report, "building media");
     free(s.list);
     free(s.scales);
     free(s.sizes);
-    free(s.solids);
     free(s.stamps);
     free(s.found);
     return done;

@@ -11,9 +11,11 @@ bool material_is_translucent(const kiln_material *);
 /* Does the material bound a solid? It has a volume with a thickness, and lets light in. */
 bool material_is_solid(const kiln_material *);
 
-/* Numbers the media by rank and fills the world's tables of them; used: which materials are in the picture's world, by
- * kiln_id. The materials' records exist. false: reported. */
-bool world_build_media(world *, const kiln_scene *, const kiln_decoding *, const bool *used, kiln_report *);
+/* An instance with a solid that may touch or overlap another; 0: there is none. false: out of memory, reported. */
+bool media_find_touching(const reduced_scene *, kiln_id *instance, kiln_report *);
+
+/* Numbers the media by rank and fills the world's tables of them. The materials' records exist. false: reported. */
+bool world_build_media(world *, const reduced_scene *, const kiln_decoding *, kiln_report *);
 
 /* Do the mesh's faces of a material leave holes? edges: how many of their sides have no counterpart. */
 bool mesh_is_open(const kiln_mesh *, kiln_id material, size_t *edges);

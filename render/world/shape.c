@@ -6,9 +6,10 @@
 #include "scene/triangulate.h"
 
 shape_primvars shape_read_primvars(const shape *s, const world *w) {
-    shape_primvars p = {.normal = mesh_primvar(s->mesh, KILN_PRIMVAR_NORMAL, 0),
-                        .color = mesh_primvar(s->mesh, KILN_PRIMVAR_COLOR, 0)};
-    if (w->wants_tangents) p.tangent = mesh_primvar(s->mesh, KILN_PRIMVAR_TANGENT, 0);
+    shape_primvars p = {0};
+    if (HOLDS(w, SMOOTH_NORMALS)) p.normal = mesh_primvar(s->mesh, KILN_PRIMVAR_NORMAL, 0);
+    if (HOLDS(w, VERTEX_COLORS)) p.color = mesh_primvar(s->mesh, KILN_PRIMVAR_COLOR, 0);
+    if (world_wants_tangents(w)) p.tangent = mesh_primvar(s->mesh, KILN_PRIMVAR_TANGENT, 0);
     for (uint32_t k = 0; k < w->uv_set_count; k++) p.uv[k] = mesh_primvar(s->mesh, KILN_PRIMVAR_UV, w->uv_sets[k]);
     return p;
 }

@@ -5,39 +5,24 @@
 #include "render/accel/accel.h"
 #include "render/world/images.h"
 
-/* Surfaces that shine: lights, which are sampled, and unlit ones, which are only ever met. */
-static void note_emission(world *w) {
-    for (uint32_t i = 0; i < w->material_count; i++) {
-        const world_material *m = &w->materials[i];
-        w->emits |= m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0;
-    }
-    for (uint32_t i = 0; i < w->lights.count; i++) {
-        w->lights.varied |= w->lights.lights[i].varies != 0;
-        w->lights.bounds |= w->lights.lights[i].medium != 0;
-    }
+static bool build(world *w, reduced_scene *scene, const world_build_options *o, kiln_report *report) {
+    world_choose_space(w, scene->scene);
+    return world_build_materials(w, scene, o, report) && world_build_geometry(w, scene, o->threads, report) &&
+           world_build_lights(w, scene, o->decoding, o->threads, report) &&
+           accel_create(w, o->threads, o->embree_config, report);
 }
 
-static bool build(world *w, const kiln_scene *scene, const kiln_decoding *decoding, kiln_texture_filter filter,
-                  uint32_t threads, const char *embree_config, kiln_report *report) {
-    world_choose_space(w, scene);
-    if (!world_build_materials(w, scene, decoding, filter, threads, report) ||
-        !world_build_geometry(w, scene, threads, report) || !world_build_lights(w, scene, decoding, threads, report))
-        return false;
-    note_emission(w);
-    return accel_create(w, threads, embree_config, report);
-}
-
-bool world_create(const kiln_scene *scene, const kiln_decoding *decoding, kiln_texture_filter filter, uint32_t threads,
-                  const char *embree_config, world **result, kiln_report *report) {
+bool world_create(const kiln_scene *scene, const world_build_options *o, world **result, kiln_report *report) {
+    reduced_scene reduced;
     *result = NULL;
     world *w = calloc(1, sizeof *w);
     if (!w) return report_no_memory(report, "building the scene");
-    if (!build(w, scene, decoding, filter, threads, embree_config, report)) {
-        world_destroy(w);
-        return false;
-    }
-    *result = w;
-    return true;
+    w->plan.asked = o->effects;
+    bool done = reduced_make(&reduced, scene, effects_removed(&o->effects), report) && build(w, &reduced, o, report);
+    reduced_free(&reduced);
+    if (done) *result = w;
+    else world_destroy(w);
+    return done;
 }
 
 void world_destroy(world *w) {

@@ -10,6 +10,8 @@
 #include "base/report.h"
 #include "base/vec.h"
 #include "kiln/render.h"
+#include "render/bsdf/kernels.h"
+#include "render/effects/scan.h"
 #include "render/light/table.h"
 #include "render/world/texture.h"
 #include "scene/scene.h"
@@ -62,18 +64,6 @@ enum {
     MATERIAL_TWO_SIDED = MATERIAL_DOUBLE_SIDED | MATERIAL_TRANSMITS
 };
 
-/* What the shading of a material can need: the kernels' instances. LAYERED has everything. */
-typedef enum material_kind {
-    KIND_DIFFUSE,
-    KIND_GLOSSY,
-    KIND_COATED,       /* and a clear coat, anisotropy */
-    KIND_TRANSMISSIVE, /* from here on light may cross */
-    KIND_LAYERED,      /* all layers but films */
-    KIND_FILMED,
-    KIND_MEDIUM,       /* of points in media that scatter: no material */
-    KIND_COUNT
-} material_kind;
-
 typedef struct world_material {
     float base[3], opacity, metallic, roughness, normal_scale;
     float emission[3];
@@ -109,6 +99,7 @@ struct accel;
 
 typedef struct world {
     kiln_arena arena;
+    kiln_effect_plan plan;
     dvec3 center; /* of render space, in the scene's */
     double scale; /* render-space units per metre; a power of two */
     float radius; /* of the scene around the origin, render space */
@@ -121,7 +112,6 @@ typedef struct world {
     uint32_t *triangles;         /* 3 a triangle */
     uint32_t *triangle_material; /* index into materials */
     uint32_t *triangle_light;    /* emitter's number in its copy, or LIGHT_NONE; NULL: nothing emits */
-    bool has_colors;
     world_instance *instances; /* [0] is what is baked */
     uint32_t instance_count;
     world_prototype baked, *prototypes;
@@ -132,7 +122,6 @@ typedef struct world {
     uint32_t material_count;
     world_texture *textures;
     uint32_t texture_count;
-    bool filters; /* some texture has a pyramid: paths carry cones */
     float curves[KILN_TRANSFER_COUNT][256]; /* of 8-bit textures */
     struct world_image *images;             /* what the textures read */
     uint32_t image_count;
@@ -140,40 +129,45 @@ typedef struct world {
     uint32_t uv_set_count;
     uint32_t slots;      /* bits of material_slot that some material has a texture in */
     uint32_t kinds;      /* bits of material_kind that occur */
-    uint32_t flags;      /* union of the materials' flags that occur */
-    bool wants_tangents; /* a normal map, or anisotropy */
-    bool single_sided;   /* some surface is culled from behind */
     world_medium *media; /* [0] is air; the higher number is there where media overlap */
     uint32_t media_count;
     float *extinction;   /* of each, 3, per length in render space */
     float *absorption;   /* the same of those that do not scatter, 0 of those that do */
     float *albedo;       /* of each, 3: what part of the extinction is scattering */
-    bool absorbs;        /* some extinction is not 0 */
-    bool scatters;       /* some medium does */
-    bool touches;        /* solids may touch or overlap */
     float *spectrum;     /* spectrum.h; NULL: no medium disperses */
 
     light_table lights;
-    bool smooth;         /* some mesh has normals of its own */
-    bool emits;          /* some surface shines, lights or unlit ones */
     struct accel *accel;
 } world;
 
-/* Reads scene, decoding (never NULL) and builds everything on `threads` threads. false: reported. */
-bool world_create(const kiln_scene *, const kiln_decoding *, kiln_texture_filter, uint32_t threads,
-                  const char *embree_config, world **, kiln_report *);
+/* Does the world have the effect's data; do its stages run? */
+#define HOLDS(w, id) HAS((w)->plan.held, id)
+#define RUNS(w, id) HAS((w)->plan.runs, id)
+
+typedef struct world_build_options {
+    const kiln_decoding *decoding; /* never NULL */
+    kiln_texture_filter filter;
+    kiln_effects effects;
+    uint32_t threads;
+    const char *embree_config;
+} world_build_options;
+
+static inline bool world_wants_tangents(const world *w) { return HOLDS(w, NORMAL_MAPS) || HOLDS(w, ANISOTROPY); }
+
+/* Reads scene and the options, and builds everything. false: reported. */
+bool world_create(const kiln_scene *, const world_build_options *, world **, kiln_report *);
+/* The plan of the world that would be built: decodes what building would, for what there is to see and for the errors,
+ * and keeps nothing. */
+bool world_plan(const kiln_scene *, const world_build_options *, kiln_effect_plan *, kiln_report *);
 void world_destroy(world *);
 
 /* The parts, in the order in which world_create calls them. */
 void world_choose_space(world *, const kiln_scene *);
-bool world_build_materials(world *, const kiln_scene *, const kiln_decoding *, kiln_texture_filter, uint32_t threads,
-                           kiln_report *);
-/* Decodes what world_build_materials and world_build_lights would, and keeps nothing. */
-bool world_check_images(const kiln_scene *, uint32_t threads, kiln_report *);
-bool world_build_geometry(world *, const kiln_scene *, uint32_t threads, kiln_report *);
+bool world_build_materials(world *, reduced_scene *, const world_build_options *, kiln_report *);
+bool world_build_geometry(world *, const reduced_scene *, uint32_t threads, kiln_report *);
 /* Appends a copy of a prototype whose coordinates are relative to center. */
 void world_place_instance(world *, const kiln_instance *, const kiln_mesh *, uint32_t prototype, dvec3 center);
-bool world_build_lights(world *, const kiln_scene *, const kiln_decoding *, uint32_t threads, kiln_report *);
+bool world_build_lights(world *, const reduced_scene *, const kiln_decoding *, uint32_t threads, kiln_report *);
 
 /* Scene to render space. */
 static inline dvec3 world_point(const world *w, dvec3 p) { return d3_scale(d3_sub(p, w->center), w->scale); }

@@ -73,6 +73,26 @@ static void json_has_the_same(void **state) {
     result_free(&r);
 }
 
+static void effects_are_shown_with_those_who_call_for_them(void **state) {
+    result r = run(*state, "inspect", PAIR("normal_texture_b"));
+    assert_has(r.out, "\nEffects\n");
+    assert_has(r.out, "\n  normal-maps          by material 0 cloth");
+    assert_has(r.out, "\n  not called for       thin-lens, motion, alpha,");
+    result_free(&r);
+    r = run(*state, "inspect", PAIR("normal_texture_b"), "--effects", "-normal-maps,+sheen", "--json");
+    json_t *json = json_loads(r.out, 0, NULL), *row;
+    size_t i;
+    json_array_foreach(json_object_get(json, "effects"), i, row) {
+        const char *name = json_string_value(json_object_get(row, "name"));
+        bool runs = json_is_true(json_object_get(row, "runs"));
+        if (strcmp(name, "normal-maps") == 0) assert_false(runs);
+        if (strcmp(name, "sheen") == 0) assert_true(runs && json_is_false(json_object_get(row, "called")));
+    }
+    assert_true(i > 20);
+    json_decref(json);
+    result_free(&r);
+}
+
 static void warnings_are_on_standard_error_and_strict_counts_them(void **state) {
     result r = run(*state, "inspect", PAIR("mode_lines_b"));
     assert_int_equal(r.code, 0);
@@ -127,6 +147,7 @@ static void the_machine_is_shown(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         CLI_TEST(assets_are_shown), CLI_TEST(the_tree_is_shown), CLI_TEST(textures_are_shown_with_their_transfer), CLI_TEST(json_has_the_same),
+        CLI_TEST(effects_are_shown_with_those_who_call_for_them),
         CLI_TEST(warnings_are_on_standard_error_and_strict_counts_them), CLI_TEST(failures_are_json_too),
         CLI_TEST(the_machine_is_shown)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -41,7 +41,7 @@ static void wrong_usage_is_one_line_and_exit_code_2(void **state) {
 /* Options of the contract that do not exist yet are unknown like any other. */
 static void nothing_is_promised_that_is_not_there(void **state) {
     const char *const names[] = {"--shutter", "--at",           "--frames",         "--fps",     "--animation",
-                                 "--variant", "--ground",       "--caustics",       "--effects", "--checkpoint",
+                                 "--variant", "--ground",       "--caustics",       "--checkpoint",
                                  "--resume",  "--denoise",      "--clamp-indirect", "--replay",  "--usd-python",
                                  "--sandbox"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)

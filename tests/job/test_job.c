@@ -329,6 +329,27 @@ static void assets_are_inspected(void **state) {
     kiln_job_destroy(job);
 }
 
+/* Without its glass a pane shows what is under it; without a coat that is not there nothing changes. */
+static void dropped_effects_are_measured(void **state) {
+    fixture *f = *state;
+    char png[256];
+    told t = {.log = {0}};
+    kiln_job *job = job_of(f, (const char *const[]){"size", "24x16", "spp", "8", "output", path_in(f, "a.png", png),
+                                                    "effects", "-transmission,-clearcoat", NULL});
+    kiln_job_listen(job, &(kiln_job_events){.log = on_log, .user = &t});
+    assert_done(f, kiln_job_render(job, PAIR("transmission_rough_a"), f->report));
+    json_t *stats = stats_of(job);
+    assert_string_equal(json_string_value(find(stats, "ablation.removed")), "transmission");
+    assert_true(json_number_value(find(stats, "ablation.difference")) > 0.05);
+    assert_true(json_number_value(find(stats, "ablation.time")) > 0);
+    assert_int_equal(json_array_size(find(stats, "effects")), KILN_EFFECT_COUNT);
+    assert_non_null(strstr(t.log.data, "does not call for clearcoat"));
+    assert_non_null(strstr(t.log.data, "without transmission the picture differs by"));
+    json_decref(stats);
+    text_free(&t.log);
+    kiln_job_destroy(job);
+}
+
 static void the_machine_and_its_libraries_are_told(void **state) {
     fixture *f = *state;
     kiln_job *job = kiln_job_create();
@@ -363,6 +384,7 @@ int main(void) {
                                        JOB_TEST(scenes_of_a_program_are_rendered),
                                        JOB_TEST(emitters_replace_the_studio_where_they_light_what_is_seen),
                                        JOB_TEST(assets_are_inspected),
+                                       JOB_TEST(dropped_effects_are_measured),
                                        JOB_TEST(the_machine_and_its_libraries_are_told)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,6 +76,9 @@ static const struct { const char *name, *given, *printed;
     {"look", "a, -b", NULL},
     {"ocio", "c.ocio", NULL},
     {"working-space", "ACEScg", NULL},
+    {"effects", "auto", NULL},
+    {"effects", "all,-alpha", NULL},
+    {"effects", "-sheen,+thin-lens,-alpha", "auto,+thin-lens,-alpha,-sheen"},
     {"embree-config", "isa=avx2", NULL},
     {"embree-config", "ISA=SSE4.2,hugepages=1 verbose=2", NULL},
     {"allow-outside", "true", NULL},
@@ -188,6 +191,13 @@ static const struct { const char *name, *value;
     {"env-rotate", "x"},
     {"env-intensity", "-1"},
     {"background", "#12345"},
+    {"effects", ""},
+    {"effects", "none"},
+    {"effects", "alpha"},
+    {"effects", "-alpha,auto"},
+    {"effects", "-alpha,"},
+    {"effects", "+alpha,-alpha"},
+    {"effects", "-many-lights"},
     {"embree-config", "foo=bar"},
     {"embree-config", "isa=avx9"},
     {"embree-config", "isa=avx2,max_isa=sse5"},
@@ -234,6 +244,12 @@ static void unknown_names_are_answered(void **state) {
     assert_true(says(f->report, "did you mean noise?"));
     assert_false(job_options_set(&f->options, "estimator", "mos", NULL, f->report));
     assert_true(says(f->report, "did you mean mis?"));
+}
+
+static void unknown_effects_are_answered(void **state) {
+    fixture *f = *state;
+    assert_false(job_options_set(&f->options, "effects", "-clearcaot", NULL, f->report));
+    assert_true(says(f->report, "no effect 'clearcaot' (did you mean 'clearcoat'?); there are thin-lens, motion,"));
 }
 
 static void giving_a_rule_replaces_all_defaults(void **state) {
@@ -286,6 +302,7 @@ int main(void) {
                                        JOB_TEST(every_option_has_a_case_and_a_default_that_parses),
                                        JOB_TEST(other_values_are_refused_and_change_nothing),
                                        JOB_TEST(unknown_names_are_answered),
+                                       JOB_TEST(unknown_effects_are_answered),
                                        JOB_TEST(giving_a_rule_replaces_all_defaults),
                                        JOB_TEST(without_any_rule_there_is_no_render),
                                        JOB_TEST(commands_are_written_for_a_shell),

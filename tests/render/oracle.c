@@ -51,11 +51,13 @@ static path start(const path_context *c, path_sample s) {
         p.squeeze = n * n;
         p.dispersed = true;
     }
-    vec2 pixel = draw(c, &p, SAMPLE_PIXEL), lens = draw(c, &p, SAMPLE_LENS);
+    vec2 pixel = draw(c, &p, SAMPLE_PIXEL);
     float across = 2.0f / (float)c->width, down = 2.0f / (float)c->height;
     float x = (float)s.x + 0.5f + pixel_filter_offset(&c->filter, pixel.x);
     float y = (float)s.y + 0.5f + pixel_filter_offset(&c->filter, pixel.y);
-    camera_ray r = camera_ray_at(&c->camera, x * across - 1.0f, 1.0f - y * down, lens);
+    float u = x * across - 1.0f, v = 1.0f - y * down;
+    camera_ray r = HAS(c->effects, THIN_LENS) ? camera_ray_at(&c->camera, u, v, draw(c, &p, SAMPLE_LENS))
+                                              : camera_ray_of_pinhole(&c->camera, u, v);
     p.origin = r.origin, p.direction = r.direction, p.near = r.near, p.far = r.far;
     p.cone = cone_camera(&c->camera, 2.0f * c->camera.half_height / (float)c->height, p.direction);
     return p;
@@ -94,7 +96,7 @@ static void add_touch(void *user, uint32_t ray, const ray_crossing *c) {
 /* Surfaces of solids that coincide with it become one; returns the media behind. */
 static uint64_t merge(const path_context *c, const path *p, ray_crossing *met) {
     const world *w = c->world;
-    if (!w->touches || !w->materials[w->triangle_material[met->triangle]].medium) return p->media;
+    if (!HAS(c->effects, NESTED_MEDIA) || !w->materials[w->triangle_material[met->triangle]].medium) return p->media;
     touch t = {0};
     float about = touch_distance(w, p->direction, met->triangle, met->instance);
     float near = fm_max(met->t - about, 0x1p-126f), far = met->t + about;
@@ -128,18 +130,14 @@ static bool find(const path_context *c, path *p, hit *h) {
     h->p = surface_at(p->origin, p->direction, &tri);
     h->corners = tri;
     h->across = p->cone.width + p->cone.spread * h->p.hit.t;
-    h->sides = w->smooth ? surface_smooth_sides(&h->p, &tri, v3_neg(p->direction)) : surface_flat_sides(&h->p);
+    h->sides = HAS(c->effects, SMOOTH_NORMALS) ? surface_smooth_sides(&h->p, &tri, v3_neg(p->direction)) : surface_flat_sides(&h->p);
     h->material = &w->materials[w->triangle_material[h->triangle]];
-    if (!w->touches) h->beyond = medium_cross(p->media, h->material->medium, h->p.front > 0.5f);
+    if (!HAS(c->effects, NESTED_MEDIA)) h->beyond = medium_cross(p->media, h->material->medium, h->p.front > 0.5f);
     return true;
 }
 
 static void collect(path *p, vec3 radiance, float weight) {
     p->radiance = v3_add(p->radiance, v3_mul(p->throughput, v3_scale(radiance, weight)));
-}
-
-static float chosen_probability(const path_context *c, uint32_t which) {
-    return c->light_cdf ? distribution_probability(c->light_cdf, which) : 0.0f;
 }
 
 static void escape(const path_context *c, path *p) {
@@ -148,14 +146,14 @@ static void escape(const path_context *c, path *p) {
     if (p->depth == 0 && c->background != KILN_BACKGROUND_ENVIRONMENT) return;
     if (t->environment.present) {
         environment_value v = environment_look_up(&t->environment, environment_place(p->direction));
-        float pdf = chosen_probability(c, t->environment.light) * v.pdf;
+        float pdf = path_light_probability(c, t->environment.light) * v.pdf;
         collect(p, v.radiance, estimate_hit_weight(c->estimator, p->pdf, pdf));
     }
     for (uint32_t k = 0; k < t->distant_count; k++) {
         const light *l = &t->lights[t->distant[k]];
         vec3 off = v3_add(p->direction, l->axis);
         if (0.5f * v3_dot(off, off) > l->one_minus_cos) continue;
-        float pdf = chosen_probability(c, t->distant[k]) * light_distant_pdf(l->one_minus_cos);
+        float pdf = path_light_probability(c, t->distant[k]) * light_distant_pdf(l->one_minus_cos);
         collect(p, l->radiance, estimate_hit_weight(c->estimator, p->pdf, pdf));
     }
 }
@@ -269,8 +267,7 @@ static surface look_up(const path_context *c, hit *h, vec3 wo, vec3 *emission, v
         if (slot == SLOT_NORMAL) map = map_of(x, m->normal_scale);
         apply_layer(&s, m, slot, x, one, &along, &coat);
     }
-    bool layered = m->kind == KIND_COATED || m->kind == KIND_LAYERED || m->kind == KIND_FILMED;
-    bool coated = layered && w->slots & 1u << SLOT_CLEARCOAT_NORMAL;
+    bool coated = s.clearcoat > 0 && w->slots & 1u << SLOT_CLEARCOAT_NORMAL;
     h->bumpy = map.x != 0.0f || map.y != 0.0f || coated;
     float sign;
     vec3 tangent = tangent_of(w, h, &sign);
@@ -318,7 +315,7 @@ static void emit(const path_context *c, path *p, const hit *h, vec3 emission) {
     bool shines = h->p.front > 0.5f || m->flags & MATERIAL_TWO_SIDED;
     if (!shines) return;
     uint32_t number = w->triangle_light ? w->triangle_light[h->triangle] : LIGHT_NONE;
-    float probability = number == LIGHT_NONE ? 0.0f : chosen_probability(c, w->instances[h->instance].light_base + number);
+    float probability = number == LIGHT_NONE ? 0.0f : path_light_probability(c, w->instances[h->instance].light_base + number);
     float pdf = probability * light_triangle_pdf(h->p.hit.t, v3_dot(h->p.geometric, p->direction), h->p.area);
     float weight = estimate_hit_weight(c->estimator, p->pdf, pdf);
     p->radiance.x += p->throughput.x * emission.x * weight;
@@ -326,20 +323,14 @@ static void emit(const path_context *c, path *p, const hit *h, vec3 emission) {
     p->radiance.z += p->throughput.z * emission.z * weight;
 }
 
-static unsigned mask_of(material_kind kind) {
-#define MASK(kind) [KIND_##kind] = SHADING_MASK_##kind,
-    static const unsigned masks[KIND_COUNT] = {SHADING_KINDS(MASK)};
-#undef MASK
-    return masks[kind];
-}
-
 /* A light, a point on it, and the density of both. plane: what parts the media of the path and those beyond. */
 static light_sampled draw_light(const path_context *c, const path *p, vec3 position, vec3 plane, uint64_t beyond,
                                 float *density) {
     const light_table *t = &c->world->lights;
     vec2 place = draw(c, p, SAMPLE_LIGHT);
-    float rest, fine = draw(c, p, SAMPLE_LIGHT_FINE).x;
-    uint32_t k = distribution_pick(c->light_cdf, c->light_guide, t->count, place.x, fine, &rest);
+    float rest = place.x, fine = draw(c, p, SAMPLE_LIGHT_FINE).x;
+    uint32_t k = 0;
+    if (c->light_cdf) k = distribution_pick(c->light_cdf, c->light_guide, t->count, place.x, fine, &rest);
     light l = t->lights[k];
     place.x = rest;
     if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, place, fine, &l);
@@ -347,7 +338,7 @@ static light_sampled draw_light(const path_context *c, const path *p, vec3 posit
     if (l.varies) r.radiance = v3_mul(r.radiance, lookup_emission(c->world, l.varies - 1, warp_triangle(place)));
     uint64_t media = v3_dot(r.wi, plane) < 0.0f ? beyond : p->media;
     if (medium_hides(c->world->media, l.medium, media, v3_dot(r.wi, l.axis) < 0.0f)) r.radiance = v3_splat(0);
-    *density = r.pdf * distribution_probability(c->light_cdf, k);
+    *density = r.pdf * path_light_probability(c, k);
     return r;
 }
 
@@ -355,7 +346,7 @@ static light_sampled draw_light(const path_context *c, const path *p, vec3 posit
 static void reach(const path_context *c, path *p, const shading_connection *n, uint32_t medium, float distance) {
     const world *w = c->world;
     vec3 sum = n->contribution;
-    if (w->absorbs) sum = v3_mul(sum, medium_transmittance(w->extinction, medium, distance));
+    if (HAS(c->effects, ABSORPTION) || HAS(c->effects, SCATTERING)) sum = v3_mul(sum, medium_transmittance(w->extinction, medium, distance));
     if (!(v3_max(sum) > 0.0f)) return;
     uint32_t visible = RAY_STOPPED;
     trace_counts counts = {0};
@@ -392,7 +383,7 @@ static bool scatter_in_medium(const path_context *c, path *p, float distance) {
     vec3 wo = v3_neg(p->direction), position = v3_madd(p->origin, distance, p->direction);
     uint32_t medium = medium_top(p->media);
     float g = c->world->media[medium].g, density;
-    if (c->light_cdf) {
+    if (c->samples_lights) {
         light_sampled r = draw_light(c, p, position, v3_splat(0), p->media, &density);
         vec3 to = v3_sub(r.target, position);
         bool placed = r.distance < INFINITY;
@@ -414,7 +405,7 @@ static bool scatter_in_medium(const path_context *c, path *p, float distance) {
 /* The cone of the ray that p has become; it came along `came`. */
 static cone widen(const path *p, const hit *h, const shading *s, vec3 came, int crosses) {
     const surface_triangle *t = &h->corners;
-    bool transmits = h->material->kind >= KIND_TRANSMISSIVE, thin = transmits && s->bsdf.thin > 0.5f;
+    bool transmits = kernel_mask(h->material->kind) & BSDF_TRANSMISSIVE, thin = transmits && s->bsdf.thin > 0.5f;
     cone_bounce b = {.d = came, .n = s->frame.z, .wi = p->direction, .pdf = p->pdf, .eta = 1, .bumpy = h->bumpy,
                      .bends = crosses & !thin, .passes = crosses & thin};
     if (transmits) b.eta = s->bsdf.eta;
@@ -448,13 +439,13 @@ static int past_limit(const path_context *c, const path *p, bool scattered) {
 
 /* What the path collects at the surface that it met, before it is lit. */
 static shading arrive(const path_context *c, path *p, hit *h) {
-    if (c->world->absorbs)
+    if (HAS(c->effects, ABSORPTION))
         p->throughput = v3_mul(p->throughput, medium_transmittance(c->world->absorption, medium_top(p->media), h->p.hit.t));
     vec3 wo = v3_neg(p->direction), normal = h->p.shading, emission;
     surface s = look_up(c, h, wo, &emission, &normal);
     bound(c, p, h, &s, &emission);
-    if (c->world->emits) emit(c, p, h, emission);
-    return shading_make(mask_of(h->material->kind), &s, h->sides, h->p.geometric, normal, wo);
+    if (HAS(c->effects, AREA_LIGHTS) || HAS(c->effects, UNLIT)) emit(c, p, h, emission);
+    return shading_make(kernel_mask(h->material->kind), &s, h->sides, h->p.geometric, normal, wo);
 }
 
 oracle_result oracle_trace(const path_context *c, path_sample sample) {
@@ -470,7 +461,7 @@ oracle_result oracle_trace(const path_context *c, path_sample sample) {
             escape(c, &p);
             break;
         }
-        bool scattered = c->world->scatters && fly(c, &p, &h, &distance);
+        bool scattered = HAS(c->effects, SCATTERING) && fly(c, &p, &h, &distance);
         if (!scattered) point = arrive(c, &p, &h);
         int past = past_limit(c, &p, scattered);
         if (past >= 0) {
@@ -482,8 +473,8 @@ oracle_result oracle_trace(const path_context *c, path_sample sample) {
             goes_on = scatter_in_medium(c, &p, distance);
             continue;
         }
-        unsigned mask = mask_of(h.material->kind);
-        if (c->light_cdf) connect(c, &p, &h, &point, mask);
+        unsigned mask = kernel_mask(h.material->kind);
+        if (c->samples_lights) connect(c, &p, &h, &point, mask);
         goes_on = scatter(c, &p, &h, &point, mask);
     }
     *(beyond ? &out.beyond : &out.radiance) = p.radiance;

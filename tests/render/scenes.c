@@ -191,7 +191,7 @@ world *build_world(scene_builder *b) {
     transfer_rec709(&decoding);
     world *w;
     commit(b);
-    must(world_create(b->scene, &decoding, KILN_TEXTURES_MIP, 1, NULL, &w, b->report), b->report, "building the world");
+    must(world_create(b->scene, &(world_build_options){&decoding, KILN_TEXTURES_MIP, .threads = 1}, &w, b->report), b->report, "building the world");
     return w;
 }
 

@@ -143,7 +143,7 @@ static void suns_give_their_illuminance(void **state) {
         kiln_decoding decoding;
         transfer_rec709(&decoding);
         world *w;
-        must(world_create(b.scene, &decoding, KILN_TEXTURES_MIP, 1, NULL, &w, b.report), b.report, "building the world");
+        must(world_create(b.scene, &(world_build_options){&decoding, KILN_TEXTURES_MIP, .threads = 1}, &w, b.report), b.report, "building the world");
         const light *l = &w->lights.lights[0];
         vec3 toward = v3(0.6f, 0.8f, 0);
         tally illuminance = {0};
@@ -185,7 +185,7 @@ static void lights_are_chosen_by_power(void **state) {
     kiln_decoding decoding;
     transfer_rec709(&decoding);
     world *w;
-    must(world_create(b.scene, &decoding, KILN_TEXTURES_MIP, 1, NULL, &w, b.report), b.report, "building the world");
+    must(world_create(b.scene, &(world_build_options){&decoding, KILN_TEXTURES_MIP, .threads = 1}, &w, b.report), b.report, "building the world");
     const double pi = M_PI, disk = 13 * pi;
     const double power[] = {pi * 12 * 3, pi * 12 * 3, 2 * pi * (1 - cos(1)) * 40, 4 * pi * 50, disk * 7, disk * 7,
                             disk * 4 * pi * 0.5};

@@ -61,7 +61,7 @@ static void check(const kiln_render_options *options) {
     kiln_camera view = everything_camera();
     o.camera = &view;
     path_context c;
-    assert_true(renderer->world->filters); /* cones are compared too */
+    assert_true(RUNS(renderer->world, TEXTURE_FILTERING)); /* cones are compared too */
     must(context_make(renderer, &o, film, &c, b.report), b.report, "making a context");
     const char *isas[] = {"v2", "v3", "v4"};
     for (int i = 0; i < 3; i++) compare(&c, isas[i]);

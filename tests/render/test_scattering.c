@@ -91,7 +91,7 @@ static void flights_are_fair_to_clear_channels(void **state) {
         }
 }
 
-static kiln_material medium(float ior, float r, float g, float b, float distance, float white, float anisotropy) {
+static kiln_material medium(float ior, float r, float g, float b, float distance, float white, float mean_cosine) {
     kiln_material m = kiln_material_default();
     m.layers = KILN_LAYER_TRANSMISSION | KILN_LAYER_VOLUME | KILN_LAYER_VOLUME_SCATTER;
     m.metallic.value = 0, m.roughness.value = 0, m.transmission.value = 1, m.thickness.value = 1;
@@ -99,7 +99,7 @@ static kiln_material medium(float ior, float r, float g, float b, float distance
     m.attenuation_color[0] = r, m.attenuation_color[1] = g, m.attenuation_color[2] = b;
     m.attenuation_distance = distance;
     for (int k = 0; k < 3; k++) m.multiscatter_color[k] = white;
-    m.scatter_anisotropy = anisotropy;
+    m.scatter_anisotropy = mean_cosine;
     return m;
 }
 

@@ -89,7 +89,7 @@ enum { PLACEMENTS = sizeof placements / sizeof *placements };
 static world *place_hills(scene_builder *b, int others) {
     *b = builder_make();
     kiln_material m = diffuse_material(1, 1, 1);
-    m.normal.texture = (kiln_texture){.image = add_image(b, (float[]){0.5f, 0.5f, 1}, 1, 1)};
+    m.normal.texture = (kiln_texture){.image = add_image(b, (float[]){0.6f, 0.5f, 1}, 1, 1)};
     kiln_id mesh = add_hills(b, add_material(b, &m));
     for (int i = 0; i < PLACEMENTS; i++) add_instance(b, mesh, placements[i]);
     add_others(b, mesh, others);

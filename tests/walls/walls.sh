@@ -32,7 +32,7 @@ public_beneath() {
     image) echo "$low|image" ;;
     scene) echo "$low|image|material|mesh|scene|render" ;; # render.h: kiln_decoding
     importers) echo "$low|image|material|mesh|scene|import" ;;
-    render) echo "$low|image|material|mesh|scene|film|render" ;;
+    render) echo "$low|difference|effects|film|image|material|mesh|render|scene" ;;
     color) echo "$low|image|material|mesh|scene|render|color" ;;
     job | cli) echo '[a-z]+' ;;
   esac
