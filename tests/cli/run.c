@@ -126,7 +126,7 @@ void result_free(result *r) {
 
 bool run_says(const place *p, const char *text) {
     const struct timespec nap = {.tv_nsec = 10000000};
-    for (int i = 0; i < 3000; i++) {
+    for (int i = 0; i < 12000; i++) {
         size_t size;
         char *err = (char *)read_all(p->streams, "err", &size);
         bool found = err && strstr(err, text);

@@ -35,7 +35,7 @@ void result_free(result *);
 /* The same in two steps, for what happens in between. */
 pid_t run_start(const place *, const char *const *arguments);
 result run_wait(const place *, pid_t);
-/* Waits until standard error holds the text; false after half a minute. */
+/* Waits until standard error holds the text; false after two minutes: sanitizers on a busy machine are slow. */
 bool run_says(const place *, const char *text);
 
 /* Runs, and holds exit code and one line on standard error that has the text; no line on standard output, no new file.
