@@ -95,11 +95,13 @@ KERNEL bsdf bsdf_make(unsigned mask, const surface *s, vec3 wo) {
     layers_make(mask, &b, s);
     bsdf_seen seen = bsdf_see(mask, &b, wo);
     float mean_loss = albedo_full_mean_loss(b.roughness), through = b.clearcoat.through * b.sheen.through;
-    int brushed = mask & BSDF_ANISOTROPIC && s->anisotropy > 0.0f;
-    if (mask & BSDF_ANISOTROPIC) mean_loss *= brushed ? anisotropy_mean(b.alphas.x, b.brushed.stretch) : 1.0f;
+    /* In numbers: conditions would keep the look-ups from vectorising. */
+    float brushed = mask & BSDF_ANISOTROPIC && s->anisotropy > 0.0f ? 1.0f : 0.0f;
+    if (mask & BSDF_ANISOTROPIC)
+        mean_loss *= fm_lerp(1.0f, anisotropy_mean(b.alphas.x, b.brushed.stretch), brushed);
     layers_means means = bsdf_plain_means(&b, mean_loss);
-    if (mask & (BSDF_COVERED | BSDF_ANISOTROPIC))
-        means = layers_means_select(layers_are_absent(&b) & !brushed, means, layers_mean(mask, &b));
+    if (mask & (BSDF_COVERED | BSDF_ANISOTROPIC)) /* where there is none of it, the tables' means: the same as without */
+        means = layers_means_select(layers_lie(&b) + brushed > 0.0f, layers_mean(mask, &b), means);
     bsdf_up_down base = bsdf_make_base(mask, &b, s, opaque, &seen, &means, through);
     vec3 metal = bsdf_make_metal(&b, s, seen.lost, mean_loss, &means, through);
     b.wide = v3_add(v3_add(base.up, metal), base.down);

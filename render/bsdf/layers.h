@@ -36,10 +36,9 @@ KERNEL layers_pass layers_toward(unsigned mask, const bsdf *b, vec3 wi, int far)
     return layers_through(mask, b, clearcoat_mu, fm_min(fabsf(wi.z), 1.0f), far);
 }
 
-/* Nothing lies on the surface, from either side. */
-KERNEL int layers_are_absent(const bsdf *b) {
-    float lies = b->clearcoat.near + b->clearcoat.far + b->sheen.near + b->sheen.far + b->film.share;
-    return !(lies > 0.0f);
+/* Above 0 where something lies on the surface, on either side. */
+KERNEL float layers_lie(const bsdf *b) {
+    return b->clearcoat.near + b->clearcoat.far + b->sheen.near + b->sheen.far + b->film.share;
 }
 
 /* On light of one event, in along wi and out along wo. */
