@@ -190,9 +190,9 @@ static json_t *render_facts(const job_run *r) {
 
 static json_t *ablation_facts(const job_run *r) {
     const job_ablation *a = &r->ablation;
-    json_t *o = json_object();
     kiln_text names = {0};
     if (!a->removed) return json_null();
+    json_t *o = json_object();
     effects_list(a->removed, &names);
     put_text(o, "removed", names.data);
     put_number(o, "difference", a->difference.known ? a->difference.root : NAN);
