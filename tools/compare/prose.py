@@ -16,7 +16,7 @@ renderer, no code and no table of kiln's. It also knows the forms that Mitsuba a
 different by intent, it says by how much: 'computed 1.15' means that kiln's formula over the peer's is 1.15.
 
 A verdict is 'same' where the ratio is 1, and 'as computed' where it is the computed one, within 2 % or the confidence
-interval; 'note 3' where it is off and note 3 says why, in bounds that the script checks; else it is **unexplained**.
+interval; 'note 2' where it is off and note 2 says why, in bounds that the script checks; else it is **unexplained**.
 """
 
 ABOUT = {
@@ -104,9 +104,6 @@ as narrow as it
 was, where kiln spreads it over both hemispheres; see rough metal, where the formula shows the same. At roughness 0
 and 0.1
 they agree. This one is reasoned, not computed: no formula here follows light through a rough sphere."""),
-    (("anisotropy",), ("formula", "mitsuba"), "", 1.02, 2.1, """**kiln is too bright here.** Its compensation of
-multiple scattering takes the tables of an isotropic surface, and at strength 1 gives back more than was lost: a white
-metal returns 6 to 8 % more than came. Single scattering is right, as the smaller strengths show."""),
     (("sheen",), ("cycles",), "", 0.2, 5.0, """Another model, as said above. kiln's is where its formula says."""),
     (("clearcoat", "dielectric"), ("cycles",), "", 0.9, 1.1, """What is left beside the exact Fresnel term, which is
 in the
