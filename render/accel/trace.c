@@ -91,12 +91,9 @@ static void load(const ray_lanes *rays, uint32_t first, struct RTCRay16 *r, pack
 
 /* Where a triangle that Embree names stands in the world. */
 static uint32_t name_hit(const world *w, const struct RTCHit16 *h, uint32_t k, int valid, uint32_t *instance) {
-    uint32_t placed = h->instID[0][k], copied = placed == RTC_INVALID_GEOMETRY_ID ? 0 : placed - 1;
-    bool hit = h->geomID[k] != RTC_INVALID_GEOMETRY_ID;
-    *instance = hit ? copied : 0;
-    return hit     ? w->instances[copied].triangle_base[h->geomID[k]] + h->primID[k]
-           : valid ? TRIANGLE_NONE
-                   : TRIANGLE_REFUSED;
+    *instance = 0;
+    if (h->geomID[k] == RTC_INVALID_GEOMETRY_ID) return valid ? TRIANGLE_NONE : TRIANGLE_REFUSED;
+    return filter_triangle(w, (const uint32_t *)(const void *)h, WIDTH, k, instance);
 }
 
 /* The same for sixteen of a world that keeps no copies. */
