@@ -11,10 +11,6 @@
 #include "render/world/mips.h"
 #include "scene/transfer.h"
 
-static size_t format_bytes(kiln_pixel_format format) {
-    return format == KILN_PIXELS_U8 ? 1 : format == KILN_PIXELS_U16 ? 2 : 4;
-}
-
 /* Grey spreads to RGB and a missing alpha is 1 (glTF 2.0, 3.9.2). */
 #define EXPAND(type, one)                                                                                              \
     static void expand_##type(const type *from, uint32_t channels, size_t count, type *to) {                           \
@@ -32,7 +28,7 @@ EXPAND(float, 1.0f)
 
 static void *expand(const kiln_image *image) {
     size_t count = (size_t)image->width * image->height;
-    void *rgba = aligned_array(4 * count, format_bytes(image->format));
+    void *rgba = aligned_array(count, texel_bytes(image->format));
     if (!rgba) return NULL;
     if (image->format == KILN_PIXELS_U8) expand_uint8_t(image->pixels, image->channels, count, rgba);
     else if (image->format == KILN_PIXELS_U16) expand_uint16_t(image->pixels, image->channels, count, rgba);
@@ -115,7 +111,7 @@ static float *to_floats(const kiln_image *image, kiln_transfer transfer, texel_d
 
 /* The size of an array of texels. */
 static size_t texels_bytes(const world_image *image, uint32_t place) {
-    return 4 * (size_t)image->width * image->height * (place ? sizeof(float) : format_bytes(image->format));
+    return (size_t)image->width * image->height * texel_bytes(place ? KILN_PIXELS_F32 : image->format);
 }
 
 /* Texels for a use, unless they are there already. */

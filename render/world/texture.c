@@ -15,9 +15,6 @@ static int32_t edge(kiln_wrap mode, int32_t i, int32_t n) {
     return i < 0 ? 0 : i >= n ? n - 1 : i;
 }
 
-static size_t texel_bytes(kiln_pixel_format format) {
-    return format == KILN_PIXELS_U8 ? 4 : format == KILN_PIXELS_U16 ? 8 : 16;
-}
 static const void *texel_address(const texture_grid *t, int32_t x, int32_t y) {
     size_t at = (size_t)y * (size_t)t->width + (size_t)x;
     return (const unsigned char *)t->texels + texel_bytes(t->format) * at;
@@ -57,9 +54,8 @@ static texel mix(texel a, texel b, float t) {
 static texture_grid grid_at(const world_texture *t, int32_t level) {
     texture_grid g = {t->texels, t->width, t->height, t->format, t->curve};
     if (level > 0) g = texture_grid_above(&g, t->levels);
-    size_t size = g.format == KILN_PIXELS_F32 ? sizeof(float[4]) : sizeof(uint16_t[4]);
     for (int32_t k = 1; k < level; k++)
-        g = texture_grid_above(&g, (const unsigned char *)g.texels + size * (size_t)g.width * (size_t)g.height);
+        g = texture_grid_above(&g, texel_address(&g, 0, g.height));
     return g;
 }
 

@@ -10,6 +10,10 @@
 
 typedef struct texel { float r, g, b, a; } texel;
 
+static inline size_t texel_bytes(kiln_pixel_format format) {
+    return format == KILN_PIXELS_U8 ? 4 : format == KILN_PIXELS_U16 ? 8 : 16;
+}
+
 /* Four channels a texel, whatever the file had: one fetch serves. Rows from the top. */
 typedef struct texture_grid {
     const void *texels;
