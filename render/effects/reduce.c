@@ -62,10 +62,10 @@ static void remove_effects(kiln_material *m, uint64_t removed) {
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (removed >> rows[i].effect & 1) drop_layers(m, rows[i].layers);
     if (HAS(removed, ALPHA)) m->alpha_mode = KILN_ALPHA_OPAQUE;
-    if (HAS(removed, NORMAL_MAPS)) drop1(&m->normal), m->clearcoat_normal = (kiln_param1){0};
+    if (HAS(removed, NORMAL_MAPS)) drop1(&m->normal), drop1(&m->clearcoat_normal);
     if (HAS(removed, REFLECTION)) drop1(&m->metallic), drop1(&m->specular);
-    if (HAS(removed, ROUGH_TRANSMISSION) && material_transmits(m)) drop1(&m->roughness);
-    if (HAS(removed, ROUGH_TRANSMISSION) && material_transmits(m)) drop_layers(m, KILN_LAYER_GLOSSINESS);
+    if (HAS(removed, ROUGH_TRANSMISSION) && material_transmits(m))
+        drop1(&m->roughness), drop_layers(m, KILN_LAYER_GLOSSINESS);
     if (HAS(removed, AREA_LIGHTS)) m->emission = (kiln_param3){0};
     if (HAS(removed, ABSORPTION) && !(m->layers & KILN_LAYER_VOLUME_SCATTER)) m->attenuation_distance = 0;
 }
@@ -178,10 +178,14 @@ static uint64_t roughness_effects(const kiln_material *m, const world_image *ima
     return effects;
 }
 
+bool material_emits(const kiln_material *m) {
+    const float *e = m->emission.value;
+    return !(m->layers & KILN_LAYER_UNLIT) && (e[0] > 0 || e[1] > 0 || e[2] > 0);
+}
+
 uint64_t material_effects(const kiln_material *m, const world_image *images) {
-    const float *base = m->base_color.value, *emission = m->emission.value;
+    const float *base = m->base_color.value;
     bool transmits = material_transmits(m), crosses = transmits || material_is_translucent(m);
-    bool emits = emission[0] > 0 || emission[1] > 0 || emission[2] > 0;
     uint64_t effects = m->alpha_mode != KILN_ALPHA_OPAQUE ? EFFECT(ALPHA) : 0;
     if (!m->double_sided && !crosses) effects |= EFFECT(CULLING);
     if (m->layers & KILN_LAYER_UNLIT)
@@ -195,7 +199,7 @@ uint64_t material_effects(const kiln_material *m, const world_image *images) {
     if (m->layers & KILN_LAYER_SHEEN) effects |= EFFECT(SHEEN);
     if (m->layers & KILN_LAYER_CLEARCOAT) effects |= EFFECT(CLEARCOAT);
     if (m->layers & KILN_LAYER_VOLUME) effects |= volume_effects(m);
-    if (emits) effects |= EFFECT(AREA_LIGHTS);
-    if (emits && m->alpha_mode != KILN_ALPHA_OPAQUE) effects |= EFFECT(TEXTURED_LIGHTS);
+    if (material_emits(m)) effects |= EFFECT(AREA_LIGHTS);
+    if (material_emits(m) && m->alpha_mode != KILN_ALPHA_OPAQUE) effects |= EFFECT(TEXTURED_LIGHTS);
     return effects;
 }

@@ -19,6 +19,9 @@ void material_reduce(kiln_material *, const reduction *);
 /* The effects that a reduced material calls for, but for those of its textures (render/world/slots.h). */
 uint64_t material_effects(const kiln_material *, const world_image *images);
 
+/* Is a reduced material's surface a light? */
+bool material_emits(const kiln_material *);
+
 /* The least and the largest of value × texture. */
 typedef struct parameter_range { float low, high; } parameter_range;
 parameter_range param1_range(const kiln_param1 *, const world_image *images);

@@ -154,11 +154,9 @@ static uint64_t scan_lights(const reduced_scene *r, const world_image *images, k
 /* Triangles of a mesh that are lights. */
 static uint64_t lamps_of(const reduced_scene *r, const kiln_mesh *m) {
     uint64_t count = 0;
-    if (!m->face_materials)
-        return material_effects(&r->materials[m->material], NULL) & EFFECT(AREA_LIGHTS) ? m->triangle_count : 0;
+    if (!m->face_materials) return material_emits(&r->materials[m->material]) ? m->triangle_count : 0;
     for (uint32_t f = 0; f < m->face_count; f++)
-        if (material_effects(&r->materials[m->face_materials[f]], NULL) & EFFECT(AREA_LIGHTS))
-            count += mesh_face_size(m, f) - 2;
+        if (material_emits(&r->materials[m->face_materials[f]])) count += mesh_face_size(m, f) - 2;
     return count;
 }
 
@@ -188,8 +186,7 @@ static bool scan_solids(const reduced_scene *r, kiln_effect_plan *plan, kiln_rep
 
 /* Memory that is held for effects: of images as they will be kept, of each mesh once. */
 static void measure(const reduced_scene *r, const world_image *images, kiln_effect_plan *plan) {
-    enum { TEXEL = 4, PYRAMID_SHARE = 3, TANGENT_BYTES = 16, COLOR_BYTES = 16 };
-    static const uint64_t sizes[] = {[KILN_PIXELS_U8] = 1, [KILN_PIXELS_U16] = 2, [KILN_PIXELS_F32] = 4};
+    enum { PYRAMID_SHARE = 3, TANGENT_BYTES = 16, COLOR_BYTES = 16 };
     uint64_t vertices = 0, lamps = 0, bytes[KILN_EFFECT_COUNT] = {0};
     for (uint32_t i = 0; i < r->scene->mesh_count; i++) {
         if (!r->shown[i]) continue;
@@ -198,9 +195,10 @@ static void measure(const reduced_scene *r, const world_image *images, kiln_effe
     }
     for (uint32_t i = 0; images && i < r->scene->image_count; i++) {
         const world_image *image = &images[i];
-        uint64_t values = TEXEL * (uint64_t)image->width * image->height, size = sizes[image->format];
-        if (image->wanted) bytes[KILN_EFFECT_TEXTURES] += values * size;
-        if (image->filtered) bytes[KILN_EFFECT_TEXTURE_FILTERING] += values * (size < 2 ? 2 : size) / PYRAMID_SHARE;
+        uint64_t texels = (uint64_t)image->width * image->height, size = texel_bytes(image->format);
+        uint64_t above = image->format == KILN_PIXELS_U8 ? texel_bytes(KILN_PIXELS_U16) : size;
+        if (image->wanted) bytes[KILN_EFFECT_TEXTURES] += texels * size;
+        if (image->filtered) bytes[KILN_EFFECT_TEXTURE_FILTERING] += texels * above / PYRAMID_SHARE;
     }
     bytes[plan->uses[KILN_EFFECT_NORMAL_MAPS].called ? KILN_EFFECT_NORMAL_MAPS : KILN_EFFECT_ANISOTROPY] =
         TANGENT_BYTES * vertices;
