@@ -71,7 +71,7 @@ extern "C" {
       "boundary, camera: paths take on a wavelength", "", "WAVELENGTH")                                                \
     X(AREA_LIGHTS, "area-lights", 0, FREE, GOES, "a surface that emits somewhere", "emission; light: triangles", "",   \
       "LIGHT")                                                                                                         \
-    X(TEXTURED_LIGHTS, "textured-lights", 0, FREE, STAYS, "one of them whose emission or coverage varies",             \
+    X(TEXTURED_LIGHTS, "textured-lights", 0, FREE, STAYS, "one of them that varies over its area or is coated",        \
       "light: look-ups at the place that was sampled", "", "")                                                         \
     X(UNLIT, "unlit", 0, FREE, GOES, "a surface that shows its base colour, which is not black everywhere",            \
       "emission", "", "")                                                                                              \

@@ -13,6 +13,15 @@ KERNEL float fresnel_schlick_weight(float c) {
     return m2 * m2 * m;
 }
 
+/* KHR_materials_clearcoat: a dielectric of ior 1.5. */
+#define CLEARCOAT_F0 0.04f
+
+KERNEL float clearcoat_fresnel(float c) { return CLEARCOAT_F0 + (1.0f - CLEARCOAT_F0) * fresnel_schlick_weight(c); }
+
+/* What a clear coat of this share lets through of what its surface emits, under a cosine ('Layering'). It is that to the
+ * geometric normal: samples of lights, which know no other, must see what a hit sees. */
+KERNEL float clearcoat_dims(float share, float c) { return 1.0f - share * clearcoat_fresnel(c); }
+
 /* At normal incidence: ((η − 1)/(η + 1))², the same from either side. */
 KERNEL float fresnel_normal(float eta) {
     float root = (eta - 1.0f) / (eta + 1.0f);

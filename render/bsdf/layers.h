@@ -11,11 +11,6 @@
 #include "render/bsdf/lobes/sheen.h"
 #include "render/bsdf/reflectance.h"
 
-/* KHR_materials_clearcoat: a dielectric of ior 1.5. */
-#define CLEARCOAT_F0 0.04f
-
-KERNEL float clearcoat_fresnel(float c) { return CLEARCOAT_F0 + (1.0f - CLEARCOAT_F0) * fresnel_schlick_weight(c); }
-
 /* What a coat of share 1 reflects in all, seen from a cosine to its normal. */
 KERNEL float clearcoat_albedo(const bsdf_clearcoat *l, float mu) {
     return bsdf_full(mu, l->alpha, l->roughness) * clearcoat_fresnel(bsdf_mean_cosine(mu, l->alpha, l->roughness));

@@ -200,6 +200,6 @@ uint64_t material_effects(const kiln_material *m, const world_image *images) {
     if (m->layers & KILN_LAYER_CLEARCOAT) effects |= EFFECT(CLEARCOAT);
     if (m->layers & KILN_LAYER_VOLUME) effects |= volume_effects(m);
     if (material_emits(m)) effects |= EFFECT(AREA_LIGHTS);
-    if (material_emits(m) && m->alpha_mode != KILN_ALPHA_OPAQUE) effects |= EFFECT(TEXTURED_LIGHTS);
+    if (material_emits(m) && (m->alpha_mode != KILN_ALPHA_OPAQUE || m->layers & KILN_LAYER_CLEARCOAT)) effects |= EFFECT(TEXTURED_LIGHTS);
     return effects;
 }

@@ -17,8 +17,21 @@ static void find_lights(const path_context *c, batch *b) {
     }
 }
 
+/* A clear coat dims what shines below it. */
+static void dim(const path_context *c, batch *b) {
+    const path_state *s = batch_state(b);
+    path_scratch *x = &b->scratch;
+    for (uint32_t i = 0; i < b->surfaces; i++) {
+        if (!(c->world->materials[x->material[i]].clearcoat > 0.0f)) continue;
+        vec3 n = {x->gx[i], x->gy[i], x->gz[i]}, d = {s->dx[i], s->dy[i], s->dz[i]};
+        float through = clearcoat_dims(x->clearcoat[i] * x->near_layers[i], fabsf(v3_dot(n, d)));
+        x->emit_r[i] *= through, x->emit_g[i] *= through, x->emit_b[i] *= through;
+    }
+}
+
 void STAGE(emission)(const path_context *c, batch *b) {
     find_lights(c, b);
+    if (HAS(c->effects, CLEARCOAT)) dim(c, b);
     path_state *s = batch_state(b);
     const path_hit *h = batch_hit(b);
     const path_scratch *x = &b->scratch;

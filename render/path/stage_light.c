@@ -61,13 +61,15 @@ KERNEL void sample(unsigned kinds, batch *b) {
     }
 }
 
-/* What the emitter's texture and its coverage say at the point. */
+/* What the emitter's texture, its coverage and its coat say at the point. */
 static void vary_emission(const world *w, batch *b) {
     path_scratch *x = &b->scratch;
     for (uint32_t i = 0; i < b->n; i++) {
         const light *l = &w->lights.lights[x->light[i]];
         if (!l->varies) continue;
-        vec3 e = lookup_emission(w, l->varies - 1, warp_triangle((vec2){x->u_light_x[i], x->u_light_y[i]}));
+        float cosine = -v3_dot(v3(x->wx[i], x->wy[i], x->wz[i]), l->axis);
+        vec2 at = warp_triangle((vec2){x->u_light_x[i], x->u_light_y[i]});
+        vec3 e = lookup_emission(w, l->varies - 1, at, cosine);
         x->cr[i] *= e.x, x->cg[i] *= e.y, x->cb[i] *= e.z;
     }
 }

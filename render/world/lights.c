@@ -69,6 +69,9 @@ static float covered_texels(const world *w, uint32_t triangle, material_slot slo
     return fabsf((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) * (float)t->width * (float)t->height;
 }
 
+/* The cosine at which a clear coat lets through what it lets through in the mean: Schlick's mean is 1/21. */
+#define MEAN_COSINE 0.456f
+
 /* Mean of what emission is multiplied with over a triangle, on a regular grid about as fine as the texels. */
 static float mean_emission(const world *w, const light *l) {
     if (!l->varies) return 1.0f;
@@ -79,7 +82,7 @@ static float mean_emission(const world *w, const light *l) {
     for (int i = 0; i < n; i++)
         for (int j = 0; j < n - i; j++) {
             vec2 at = {((float)i + 0.3333f) / (float)n, ((float)j + 0.3333f) / (float)n};
-            sum += v3_dot(lookup_emission(w, triangle, at), l->radiance);
+            sum += v3_dot(lookup_emission(w, triangle, at, MEAN_COSINE), l->radiance);
             points += l->radiance.x + l->radiance.y + l->radiance.z;
         }
     return points > 0 ? sum / points : 0.0f;

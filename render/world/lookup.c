@@ -1,5 +1,7 @@
 #include "render/world/lookup.h"
 
+#include "render/bsdf/fresnel.h"
+
 vec2 lookup_uv(const world *w, uint32_t triangle, uint32_t uv_set, vec2 at) {
     const uint32_t *i = w->triangles + 3 * (size_t)triangle;
     const float *uv[3];
@@ -50,8 +52,21 @@ static float coverage(const world *w, uint32_t triangle, vec2 at) {
     return 1.0f;
 }
 
-vec3 lookup_emission(const world *w, uint32_t triangle, vec2 at) {
-    float stands = coverage(w, triangle, at);
+/* A solid wears its coat outside, a thin wall on both sides. */
+static float coat_lets(const world *w, uint32_t triangle, vec2 at, float cosine) {
+    const world_material *m = &w->materials[w->triangle_material[triangle]];
+    if (!(m->clearcoat > 0.0f) || !(m->thin > 0.5f || cosine > 0.0f)) return 1.0f;
+    const world_texture *t = texture_of(w, triangle, SLOT_CLEARCOAT);
+    float share = m->clearcoat;
+    if (t) {
+        vec2 uv = lookup_uv(w, triangle, t->uv_set, at);
+        share *= texture_channel(t, uv.x, uv.y);
+    }
+    return clearcoat_dims(share, fabsf(cosine));
+}
+
+vec3 lookup_emission(const world *w, uint32_t triangle, vec2 at, float cosine) {
+    float stands = coverage(w, triangle, at) * coat_lets(w, triangle, at, cosine);
     const world_texture *t = texture_of(w, triangle, SLOT_EMISSION);
     if (!t) return v3(stands, stands, stands);
     vec2 uv = lookup_uv(w, triangle, t->uv_set, at);
@@ -61,7 +76,7 @@ vec3 lookup_emission(const world *w, uint32_t triangle, vec2 at) {
 
 bool lookup_emission_varies(const world *w, uint32_t triangle) {
     const world_material *m = &w->materials[w->triangle_material[triangle]];
-    return m->texture[SLOT_EMISSION] || m->flags & (MATERIAL_MASK | MATERIAL_BLEND);
+    return m->texture[SLOT_EMISSION] || m->flags & (MATERIAL_MASK | MATERIAL_BLEND) || m->clearcoat > 0.0f;
 }
 
 uint32_t lookup_object(const world *w, uint32_t triangle, uint32_t copy) {

@@ -16,9 +16,10 @@ vec3 lookup_facing(const world *, uint32_t triangle, uint32_t instance);
 /* Opacity times texture times vertex colour. */
 float lookup_alpha(const world *, uint32_t triangle, vec2 at);
 
-/* What the material's emission is multiplied with: its texture, and the part of the light that coverage lets stand (a
- * ray meets the surface with this probability). */
-vec3 lookup_emission(const world *, uint32_t triangle, vec2 at);
+/* What the material's emission is multiplied with: its texture, the part of the light that coverage lets stand (a ray meets
+ * the surface with this probability), and what a clear coat lets through. cosine: of the direction that the light takes
+ * to the normal of the front; below 0 it leaves the back. */
+vec3 lookup_emission(const world *, uint32_t triangle, vec2 at, float cosine);
 
 /* The handle of the scene's instance whose triangle this is. */
 uint32_t lookup_object(const world *, uint32_t triangle, uint32_t copy);

@@ -1,6 +1,7 @@
 #include "render/world/slots.h"
 
 #include "render/effects/plan.h"
+#include "render/effects/reduce.h"
 
 int slots_list(const kiln_material *m, slot_use uses[SLOT_COUNT]) {
     int n = 0;
@@ -51,10 +52,11 @@ bool slot_is_constant(const slot_use *use, const world_image *images) {
 }
 
 /* Where coverage decides what is seen of a texel, its neighbours would bleed into it; emission is sampled by lights too,
- * without a footprint; the mean of normals, or of directions, is none of a rougher surface. */
+ * without a footprint, and so is the coat above it; the mean of normals, or of directions, is none of a rougher surface. */
 bool slot_is_filtered(const kiln_material *m, const slot_use *use) {
     return m->alpha_mode == KILN_ALPHA_OPAQUE && use->texture->filter == KILN_FILTER_LINEAR &&
-           use->slot != SLOT_EMISSION && use->slot != SLOT_OPACITY && !is_direction(use->slot);
+           use->slot != SLOT_EMISSION && use->slot != SLOT_OPACITY && !is_direction(use->slot) &&
+           !(use->slot == SLOT_CLEARCOAT && material_emits(m));
 }
 
 uint64_t slots_effects(const kiln_material *m, const world_image *images, kiln_texture_filter filter) {

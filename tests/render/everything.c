@@ -142,6 +142,7 @@ static kiln_id emitter(scene_builder *b, bool unlit) {
     for (int k = 0; k < 3; k++) m.emission.value[k] = 3;
     m.emission.texture = texture(noise_image(b, 9, 0, 255), 0, 0, KILN_TRANSFER_SRGB);
     if (unlit) m.layers = KILN_LAYER_UNLIT;
+    else add_clearcoat(b, &m);
     return add_material(b, &m);
 }
 

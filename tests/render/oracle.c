@@ -309,11 +309,13 @@ static void bound(const path_context *c, path *p, const hit *h, surface *s, vec3
     }
 }
 
-static void emit(const path_context *c, path *p, const hit *h, vec3 emission) {
+static void emit(const path_context *c, path *p, const hit *h, const surface *s, vec3 emission) {
     const world *w = c->world;
     const world_material *m = h->material;
     bool shines = h->p.front > 0.5f || m->flags & MATERIAL_TWO_SIDED;
     if (!shines) return;
+    float cosine = fabsf(v3_dot(h->p.geometric, p->direction));
+    if (m->clearcoat > 0) emission = v3_scale(emission, clearcoat_dims(s->clearcoat * s->near, cosine));
     uint32_t number = w->triangle_light ? w->triangle_light[h->triangle] : LIGHT_NONE;
     float probability = number == LIGHT_NONE ? 0.0f : path_light_probability(c, w->instances[h->instance].light_base + number);
     float pdf = probability * light_triangle_pdf(h->p.hit.t, v3_dot(h->p.geometric, p->direction), h->p.area);
@@ -335,7 +337,9 @@ static light_sampled draw_light(const path_context *c, const path *p, vec3 posit
     place.x = rest;
     if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, place, fine, &l);
     light_sampled r = light_sample(KIND(LIGHT_KINDS) - 1, &l, position, place);
-    if (l.varies) r.radiance = v3_mul(r.radiance, lookup_emission(c->world, l.varies - 1, warp_triangle(place)));
+    float cosine = -v3_dot(r.wi, l.axis);
+    if (l.varies)
+        r.radiance = v3_mul(r.radiance, lookup_emission(c->world, l.varies - 1, warp_triangle(place), cosine));
     uint64_t media = v3_dot(r.wi, plane) < 0.0f ? beyond : p->media;
     if (medium_hides(c->world->media, l.medium, media, v3_dot(r.wi, l.axis) < 0.0f)) r.radiance = v3_splat(0);
     *density = r.pdf * path_light_probability(c, k);
@@ -444,7 +448,7 @@ static shading arrive(const path_context *c, path *p, hit *h) {
     vec3 wo = v3_neg(p->direction), normal = h->p.shading, emission;
     surface s = look_up(c, h, wo, &emission, &normal);
     bound(c, p, h, &s, &emission);
-    if (HAS(c->effects, AREA_LIGHTS) || HAS(c->effects, UNLIT)) emit(c, p, h, emission);
+    if (HAS(c->effects, AREA_LIGHTS) || HAS(c->effects, UNLIT)) emit(c, p, h, &s, emission);
     return shading_make(kernel_mask(h->material->kind), &s, h->sides, h->p.geometric, normal, wo);
 }
 

@@ -16,10 +16,11 @@ static const float alphas[4 * 3] = {0, 0, 0, 0.5f, 0.5f, 0.5f, 0.25f, 0.25f, 0.2
 static const float glows[4 * 3] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
 
 /* A unit square whose point (x, y) has the texture coordinates (x, 1 − y). */
-static world *make_square(scene_builder *b, kiln_alpha_mode mode, bool textured) {
+static world *make_square(scene_builder *b, kiln_alpha_mode mode, bool textured, float coat) {
     kiln_material m = diffuse_material(0.5f, 0.5f, 0.5f);
     m.alpha_mode = mode, m.alpha_cutoff = 0.3f, m.opacity.value = 0.8f;
     for (int k = 0; k < 3; k++) m.emission.value[k] = 1;
+    if (coat > 0) m.layers = KILN_LAYER_CLEARCOAT, m.clearcoat.value = coat;
     if (textured) {
         m.opacity.texture = (kiln_texture){.image = add_image(b, alphas, 2, 2), .transfer = KILN_TRANSFER_DATA};
         m.emission.texture = (kiln_texture){.image = add_image(b, glows, 2, 2), .transfer = KILN_TRANSFER_LINEAR};
@@ -55,7 +56,7 @@ static void check(const world *w, kiln_alpha_mode mode, bool textured, uint32_t 
     if (fabs(alpha - 0.3) < 1e-4) return; /* on the cutoff rounding decides */
     if (mode != KILN_ALPHA_OPAQUE) assert_true(fabs((double)lookup_alpha(w, triangle, at) - alpha) < 1e-5);
     double stands = mode == KILN_ALPHA_BLEND ? alpha : mode == KILN_ALPHA_MASK ? alpha >= 0.3 : 1;
-    vec3 e = lookup_emission(w, triangle, at);
+    vec3 e = lookup_emission(w, triangle, at, 1);
     const float got[3] = {e.x, e.y, e.z};
     for (int k = 0; k < 3; k++) {
         double expected = stands * (textured ? bilinear(glows, k, p.x, 1 - p.y) : 1);
@@ -71,7 +72,7 @@ static void points_are_looked_up(void **state) {
         scene_builder b = builder_make();
         bool textured = row & 1;
         kiln_alpha_mode mode = modes[row / 2];
-        world *w = make_square(&b, mode, textured);
+        world *w = make_square(&b, mode, textured, 0);
         assert_int_equal(w->triangle_count, 2);
         if (mode == KILN_ALPHA_MASK && !textured) mode = KILN_ALPHA_OPAQUE; /* above its cutoff everywhere */
         for (uint32_t t = 0; t < 2; t++) {
@@ -83,7 +84,22 @@ static void points_are_looked_up(void **state) {
     }
 }
 
+/* KHR_materials_clearcoat, 'Layering': 1 − clearcoat · (0.04 + 0.96 (1 − cos)^5), from either side of a wall. */
+static void coats_dim_emission(void **state) {
+    (void)state;
+    scene_builder b = builder_make();
+    world *w = make_square(&b, KILN_ALPHA_OPAQUE, false, 0.7f);
+    assert_true(lookup_emission_varies(w, 0));
+    for (int i = -20; i <= 20; i++) {
+        double cosine = i / 20.0, expected = 1 - 0.7 * (0.04 + 0.96 * pow(1 - fabs(cosine), 5));
+        vec3 e = lookup_emission(w, 0, (vec2){0.3f, 0.3f}, (float)cosine);
+        if (i) assert_true(fabs((double)e.x - expected) < 1e-6 && e.x == e.y && e.y == e.z);
+    }
+    world_destroy(w);
+    builder_free(&b);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(points_are_looked_up)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(points_are_looked_up), cmocka_unit_test(coats_dim_emission)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
