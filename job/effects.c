@@ -24,6 +24,7 @@ static json_t *row(const kiln_effect_plan *plan, kiln_effect effect) {
     json_t *o = json_object(), *callers = json_array();
     put_text(o, "name", facts.name);
     put_bool(o, "called", use->called);
+    put_bool(o, "removable", facts.removable);
     put_bool(o, "runs", use->runs);
     put_count(o, "caller_count", use->caller_count);
     for (uint32_t i = 0; i < use->caller_count && i < KILN_EFFECT_CALLERS; i++)
