@@ -10,6 +10,7 @@ typedef enum cli_progress { PROGRESS_AUTO, PROGRESS_ALWAYS, PROGRESS_NEVER } cli
 /* How a command talks. */
 typedef struct cli_talk {
     bool json, quiet, verbose, help;
+    bool compare, list; /* what kiln color does */
     cli_progress progress;
 } cli_talk;
 
@@ -18,12 +19,14 @@ extern const option_table cli_talk_table;
 typedef struct cli_args {
     kiln_job *job; /* has the options that were given */
     cli_talk talk;
-    const char *scene; /* the one positional argument; NULL: none */
+    const char *scene; /* the first positional argument; NULL: none */
+    const char *other; /* the second, of commands that take one */
     bool picture_on_stdout;
 } cli_args;
 
 typedef struct cli_command {
     const char *name, *argument, *summary;
+    bool two;          /* takes two positional arguments */
     bool renders;      /* takes all options of a job, but those that have one of the bits below in option_row.except */
     unsigned takes;    /* takes those that have one of these bits in option_row.also */
     const char *talk; /* names of talk options that it takes, between spaces */
@@ -31,7 +34,7 @@ typedef struct cli_command {
     int (*run)(const struct cli_command *, cli_args *, kiln_report *); /* the exit code */
 } cli_command;
 
-extern const cli_command cli_render, cli_inspect, cli_bench, cli_info, cli_help, cli_version;
+extern const cli_command cli_render, cli_inspect, cli_bench, cli_color, cli_info, cli_help, cli_version;
 extern const cli_command *const cli_commands[]; /* NULL at the end */
 
 enum { EXIT_USAGE = 2 };

@@ -1,39 +1,9 @@
 #include <stdlib.h>
 
 #include "cli/cli.h"
+#include "cli/color_text.h"
 #include "cli/json_text.h"
 #include "job/options.h"
-
-static void print_names(kiln_text *out, const char *heading, const json_t *names) {
-    const json_t *name;
-    size_t i;
-    text_format(out, "  %-12s ", heading);
-    json_array_foreach(names, i, name) {
-        text_append(out, i ? ", " : "");
-        append_name(out, json_string_value(name), 0);
-    }
-    text_append(out, json_array_size(names) ? "\n" : "none\n");
-}
-
-static void print_color(kiln_text *out, const json_t *color) {
-    const json_t *display;
-    size_t i;
-    text_format(out, "\nColour\n  config       %s\n  default      %s\n", text_in(color, "config"),
-                text_in(color, "default"));
-    json_array_foreach(member(color, "displays"), i, display) {
-        text_append(out, i ? "               " : "  displays     ");
-        append_name(out, text_in(display, "name"), 0);
-        const json_t *view;
-        size_t k;
-        json_array_foreach(member(display, "views"), k, view) {
-            text_append(out, k ? ", " : ": ");
-            append_name(out, json_string_value(view), 0);
-        }
-        text_append(out, "\n");
-    }
-    print_names(out, "looks", member(color, "looks"));
-    print_names(out, "spaces", member(color, "spaces"));
-}
 
 static void print_machine(kiln_text *out, const json_t *m) {
     text_format(
@@ -51,11 +21,12 @@ static void print_info(const char *json, kiln_text *out) {
     json_object_foreach((json_t *)member(root, "versions"), name, version)
         text_format(out, "  %-14s %s\n", name, json_string_value(version));
     print_machine(out, member(root, "machine"));
-    print_color(out, member(root, "color"));
+    text_append(out, "\nColour\n");
+    append_color(out, member(root, "color"));
     text_append(out, "\nFormats\n");
-    print_names(out, "scenes", member(formats, "scenes"));
-    print_names(out, "textures", member(formats, "pictures_read"));
-    print_names(out, "pictures", member(formats, "pictures_written"));
+    append_names(out, "scenes", member(formats, "scenes"));
+    append_names(out, "textures", member(formats, "pictures_read"));
+    append_names(out, "pictures", member(formats, "pictures_written"));
     json_decref(root);
 }
 

@@ -5,7 +5,8 @@
 #include "cli/cli.h"
 #include "cli/log.h"
 
-const cli_command *const cli_commands[] = {&cli_render, &cli_inspect, &cli_bench, &cli_info, &cli_help, &cli_version, NULL};
+const cli_command *const cli_commands[] = {&cli_render, &cli_inspect, &cli_bench,   &cli_color,
+                                           &cli_info,   &cli_help,    &cli_version, NULL};
 
 static const cli_command *find(const char *name) {
     for (size_t i = 0; cli_commands[i]; i++)

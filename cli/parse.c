@@ -111,11 +111,12 @@ static bool parse_positional(parser *p, const char *argument) {
     if (!p->command->argument)
         return report_error(p->report, KILN_CODE_USAGE, NULL, NULL, "kiln %s takes no argument '%s'", p->command->name,
                             argument);
-    if (p->args->scene)
+    const char **slot = p->args->scene && p->command->two ? &p->args->other : &p->args->scene;
+    if (*slot)
         return report_error(p->report, KILN_CODE_USAGE, NULL, "call it once for each",
-                            "'%s' and '%s': kiln %s takes one %s", p->args->scene, argument, p->command->name,
+                            "'%s' and '%s': kiln %s takes one %s", *slot, argument, p->command->name,
                             p->command->argument);
-    p->args->scene = argument;
+    *slot = argument;
     return true;
 }
 

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "job/bench.h"
+#include "job/compare.h"
 #include "job/info.h"
 #include "job/inspect.h"
 #include "job/run.h"
@@ -156,6 +157,16 @@ char *kiln_job_inspect(kiln_job *job, const char *path, kiln_report *report) {
     bool done = run_start(&job->run, &job->options, &job->events, path, report) && inspect(&job->run, &json);
     if (!done) json = inspect_failure(path, report);
     return hand_out(json, "inspecting", report);
+}
+
+char *kiln_job_compare(kiln_job *job, const char *path, const char *reference, kiln_report *report) {
+    json_t *json;
+    compare_files(&job->options, path, reference, &json, report);
+    return hand_out(json, "comparing", report);
+}
+
+bool kiln_job_convert(kiln_job *job, const char *path, kiln_report *report) {
+    return convert_file(&job->options, path, report);
 }
 
 char *kiln_job_info(kiln_job *job, kiln_report *report) {

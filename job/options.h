@@ -5,6 +5,7 @@
 
 #include "job/layers.h"
 #include "job/option.h"
+#include "kiln/compare.h"
 #include "kiln/import.h"
 #include "kiln/render.h"
 
@@ -65,10 +66,12 @@ typedef struct job_options {
     bool strict;
     bool embree;        /* of kiln bench: replay the rays by Embree alone */
     const char *growth; /* of kiln bench: what varies; NULL: nothing */
+    kiln_metric metric; /* of kiln color */
+    double threshold;
 } job_options;
 
 /* What option_row.also and .except mean here. */
-enum { JOB_INSPECT = 1, JOB_INFO = 2, JOB_BENCH = 4, JOB_RENDER = 8 };
+enum { JOB_INSPECT = 1, JOB_INFO = 2, JOB_BENCH = 4, JOB_RENDER = 8, JOB_COLOR = 16 };
 
 extern const option_table job_option_table;
 

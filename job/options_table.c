@@ -17,9 +17,15 @@ static const option_choice schemes[] = {{"auto", KILN_SCHEME_AUTO},
                                         {"bilinear", KILN_SCHEME_BILINEAR},
                                         {NULL, 0}};
 
+static const option_choice metrics[] = {{"relmse", KILN_METRIC_RELMSE},
+                                        {"mse", KILN_METRIC_MSE},
+                                        {"mae", KILN_METRIC_MAE},
+                                        {"flip", KILN_METRIC_FLIP},
+                                        {NULL, 0}};
+
 static const char picture[] = "Picture", quality[] = "When it ends", estimator[] = "Estimator", camera[] = "Camera",
                   light[] = "Light", surface[] = "Surfaces", color[] = "Colour", machine[] = "Machine",
-                  measure[] = "Measure";
+                  measure[] = "Measure", compare[] = "Pictures";
 
 /* In the order of kiln/film.h. */
 #define AOV_NAMES                                                                                                      \
@@ -31,7 +37,7 @@ static const option_row rows[] = {
     {"output", 'o', "FILE", picture,
      "by suffix: .exr scene-linear with AOVs and metadata, .hdr scene-linear, .png .jpg .webp .tif as displayed; "
      "'-' is a PNG on stdout; repeatable; {name} {camera} {frame:4} {variant} and #### are filled in",
-     NULL, "{name}.png", "a file name", &option_texts, FIELD(outputs), .except = JOB_BENCH},
+     NULL, "{name}.png", "a file name", &option_texts, FIELD(outputs), .also = JOB_COLOR, .except = JOB_BENCH},
     {"size", 0, "WxH", picture, "pixels", NULL, "1024x1024, or 1024 and the aspect of the scene's camera",
      "a size WxH of 1 to 65536 pixels a side", &option_size, FIELD(size), .also = JOB_INSPECT},
     {"crop", 0, "X0,Y0,X1,Y1", picture, "renders that part alone; pixels, right and bottom exclusive", NULL, NULL,
@@ -110,17 +116,17 @@ static const option_row rows[] = {
 
     {"exposure", 0, "EV", color, "stops; doubles the light with each", NULL,
      "0; chosen where the file has punctual lights", "a number of stops from -64 to 64", &option_number, .low = -64,
-     .high = 64, FIELD(exposure), .except = JOB_BENCH},
+     .high = 64, FIELD(exposure), .also = JOB_COLOR, .except = JOB_BENCH},
     {"display", 0, "NAME", color, "'kiln info' lists displays and views", NULL, "the config's, sRGB",
-     "the name of a display", &option_text, FIELD(display), .also = JOB_INFO, .except = JOB_BENCH},
+     "the name of a display", &option_text, FIELD(display), .also = JOB_INFO | JOB_COLOR, .except = JOB_BENCH},
     {"view", 0, "NAME", color, "how scene-linear becomes a picture", NULL, "the config's, Khronos PBR Neutral",
-     "the name of a view", &option_text, FIELD(view), .also = JOB_INFO, .except = JOB_BENCH},
+     "the name of a view", &option_text, FIELD(view), .also = JOB_INFO | JOB_COLOR, .except = JOB_BENCH},
     {"look", 0, "NAME", color, "OpenColorIO looks in place of the view's own", NULL, "the view's", "the name of a look",
-     &option_text, FIELD(look), .also = JOB_INFO, .except = JOB_BENCH},
+     &option_text, FIELD(look), .also = JOB_INFO | JOB_COLOR, .except = JOB_BENCH},
     {"ocio", 0, "FILE", color, "OpenColorIO config", NULL, "$OCIO, else embedded", "the name of a file", &option_text,
-     FIELD(ocio), .also = JOB_INFO},
+     FIELD(ocio), .also = JOB_INFO | JOB_COLOR},
     {"working-space", 0, "NAME", color, "scene-linear space that light is computed in", NULL, "lin_rec709",
-     "the name of a colour space", &option_text, FIELD(working_space), .also = JOB_INFO},
+     "the name of a colour space", &option_text, FIELD(working_space), .also = JOB_INFO | JOB_COLOR},
 
     {"effects", 0, "auto|all|LIST", machine,
      "what is simulated: auto, what the scene calls for; all, every term of the kernels, with the same bits; '-name' drops "
@@ -129,7 +135,7 @@ static const option_row rows[] = {
      .also = JOB_INSPECT, .explain = option_explain_effects},
     {"threads", 0, "N", machine, "threads to work with", NULL, "$KILN_THREADS, else all cores",
      "a whole number from 1 to 4096", &option_count, .low = 1, .high = 4096, FIELD(threads),
-     .also = JOB_INSPECT | JOB_INFO},
+     .also = JOB_INSPECT | JOB_INFO | JOB_COLOR},
     {"allow-outside", 0, NULL, machine,
      "the asset may refer to files outside its folder: ../textures, absolute paths, links; for assets that you trust",
      NULL, NULL, "true or false", &option_toggle, FIELD(allow_outside), .also = JOB_INSPECT},
@@ -145,6 +151,13 @@ static const option_row rows[] = {
     {"growth", 0, "LIST", measure,
      "how time and memory grow with pixels, triangles, instances, depth, threads, or all; 'triangles:1e6' ends there",
      NULL, NULL, "a list", &option_text, FIELD(growth), .also = JOB_BENCH, .except = JOB_RENDER},
+
+    {"metric", 0, "NAME", compare,
+     "relmse, mse or mae of the files' numbers, or flip: what is seen; of scene-linear files over all exposures",
+     NULL, "all of them; of --threshold and -o relmse", "a metric", &option_choices, metrics, FIELD(metric), .also = JOB_COLOR,
+     .except = JOB_RENDER | JOB_BENCH},
+    {"threshold", 0, "X", compare, "exit code 1 when the error is above X", NULL, NULL, "a number from 0 to 1e30",
+     &option_number, .high = 1e30, FIELD(threshold), .also = JOB_COLOR, .except = JOB_RENDER | JOB_BENCH},
 };
 
 const option_table job_option_table = {rows, sizeof rows / sizeof *rows};

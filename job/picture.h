@@ -31,4 +31,13 @@ bool picture_write_exr(const picture *, const char *path, kiln_report *);
 /* Scene-linear RGB with the background colour behind it; width × height × 3 floats of the crop. */
 void picture_beauty(const picture *, const float *alpha, float *rgb);
 
+/* picture_read.c: a picture from a file, as numbers; grey is three equal channels, what is transparent lies on black. */
+typedef struct picture_pixels {
+    uint32_t width, height, channels; /* of the file: 2 and 4 have alpha */
+    bool linear;                      /* floats, scene-linear; else integers as 0 … 1, display-referred */
+    float *rgb;
+} picture_pixels;
+bool picture_read(const char *path, picture_pixels *, kiln_report *);
+void picture_pixels_free(picture_pixels *);
+
 #endif

@@ -68,6 +68,15 @@ KILN_API char *kiln_job_inspect(kiln_job *, const char *path, kiln_report *);
  * out of memory. */
 KILN_API char *kiln_job_bench(kiln_job *, const char *path, kiln_report *);
 
+/* Compares two pictures, files of any format that kiln reads, by the option "metric" or by all metrics: JSON; free().
+ * What is transparent lies on black. Integers are display-referred, 0 … 1; floats are scene-linear, and taken for
+ * Rec.709 by FLIP; one of each is an error. With the option "output" a map of the errors is written, as numbers or in
+ * false colours. An error above "threshold" is one: KILN_CODE_DIFFERENT. NULL: out of memory. */
+KILN_API char *kiln_job_compare(kiln_job *, const char *path, const char *reference, kiln_report *);
+
+/* Writes a scene-linear picture as the view shows it: the options "output", "exposure", "view" and so on. */
+KILN_API bool kiln_job_convert(kiln_job *, const char *path, kiln_report *);
+
 /* What the machine and the libraries offer, as JSON; free(). The job's options choose the colour config. */
 KILN_API char *kiln_job_info(kiln_job *, kiln_report *);
 

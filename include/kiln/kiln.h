@@ -4,6 +4,7 @@
 
 #include "kiln/api.h"
 #include "kiln/color.h"
+#include "kiln/compare.h"
 #include "kiln/difference.h"
 #include "kiln/effects.h"
 #include "kiln/film.h"

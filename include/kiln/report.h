@@ -40,6 +40,7 @@ typedef enum kiln_severity { KILN_NOTE, KILN_WARNING, KILN_ERROR } kiln_severity
     X(MEMORY, "memory", 1)                 /* allocation failed */                                                     \
     X(DEVICE, "device", 1)                 /* Embree or a thread could not be started */                               \
     X(STRICT, "strict", 1)                 /* --strict: a warning or a discarded sample counts as a failure */         \
+    X(DIFFERENT, "different", 1)           /* --threshold: pictures differ by more */                                  \
     X(CANCELLED, "cancelled", 130)         /* the cancel flag was raised */                                            \
     X(INTERNAL, "internal", 1)             /* a mistake of kiln's own */
 

@@ -87,6 +87,8 @@ static const struct { const char *name, *given, *printed;
     {"strict", "false", NULL},
     {"embree", "true", NULL},
     {"growth", "pixels,triangles:1e6", NULL},
+    {"metric", "flip", NULL},
+    {"threshold", "0.01", NULL},
 };
 
 static void print_value(const fixture *f, const char *name, kiln_text *out) {

@@ -29,7 +29,7 @@ public_beneath() {
   low='api|report'
   case $1 in
     base) echo "$low" ;;
-    image) echo "$low|image" ;;
+    image) echo "$low|image|compare" ;;
     scene) echo "$low|image|material|mesh|scene|render" ;; # render.h: kiln_decoding
     importers) echo "$low|image|material|mesh|scene|import" ;;
     render) echo "$low|difference|effects|film|image|material|mesh|render|scene" ;;
