@@ -8,7 +8,7 @@
 #include "base/threads.h"
 
 /* Small enough that its pixels stay coherent, large enough to fill a batch at one sample a pixel. */
-enum { TILE = 32 };
+enum { TILE = 32, BLOCK = 4 };
 
 bool pass_make_workers(pass *p) {
     p->workers = array_alloc(p->threads, sizeof *p->workers);
@@ -76,11 +76,15 @@ static void check_aovs(const pass *p, pass_worker *w, const path_sample *at, fil
     for (int k = 0; k < 3; k++) s->albedo[k] = s->normal[k] = s->position[k] = 0.0f;
 }
 
-static void store(const pass *p, pass_worker *w, uint32_t count) {
+/* Into the film; returns how many samples that were. */
+static uint32_t store(const pass *p, pass_worker *w, uint32_t count) {
     const path_output *o = &w->batch->out;
     const uint32_t *crop = p->film->desc.crop;
+    uint32_t stored = 0;
     for (uint32_t i = 0; i < count; i++) {
         const path_sample *at = &w->samples[i];
+        if (at->idle) continue;
+        stored++;
         film_sample s = {.radiance = {o->r[i], o->g[i], o->b[i]}, .alpha = o->alpha[i], .depth = o->depth[i],
                          .uv = {o->uv[0][i], o->uv[1][i]}, .object = o->object[i], .material = o->material[i]};
         for (int k = 0; k < 3; k++)
@@ -94,7 +98,8 @@ static void store(const pass *p, pass_worker *w, uint32_t count) {
         for (int k = 0; k < 3; k++)
             if (fixed_fits(beyond[k])) w->beyond[k] += fixed_from_float(beyond[k]);
     }
-    atomic_fetch_add_explicit(&w->traced, count, memory_order_relaxed);
+    atomic_fetch_add_explicit(&w->traced, stored, memory_order_relaxed);
+    return stored;
 }
 
 static bool must_stop(pass *p, uint32_t thread) {
@@ -104,28 +109,10 @@ static bool must_stop(pass *p, uint32_t thread) {
     return atomic_load(&p->stopped);
 }
 
-static void trace(pass *p, uint32_t thread, uint32_t count) {
-    pass_worker *w = &p->workers[thread];
-    batch *b = w->batch;
-    ray_tape *tape = p->tapes ? tape_begin(&p->tapes[thread]) : NULL;
-    b->camera_rays.tape = b->bounce_rays.tape = b->shadow_rays.tape = tape;
-    stage_clock_start(&b->clock);
-    p->tracer(p->context, w->samples, count, b);
-    if (tape) tape_end(tape, count);
-    store(p, w, count);
-    stage_clock_read(&b->clock, KILN_STAGE_FILM);
-}
-
-/* Even bits of a Morton number: neighbours in it are neighbours in the tile. */
-static uint32_t even_bits(uint32_t m) {
-    m &= 0x55555555u;
-    m = (m | m >> 1) & 0x33333333u;
-    m = (m | m >> 2) & 0x0f0f0f0fu;
-    return (m | m >> 4) & 0x00ff00ffu;
-}
-
-static uint32_t tiles_across(const kiln_film *f) { return (f->width + TILE - 1) / TILE; }
-static uint32_t tiles_down(const kiln_film *f) { return (f->height + TILE - 1) / TILE; }
+/* Tiles are aligned with the picture, not with the crop, in whole blocks of pixels. */
+static uint32_t tiles_origin(const kiln_film *f, int axis) { return f->desc.crop[axis] / BLOCK * BLOCK; }
+static uint32_t tiles_across(const kiln_film *f) { return (f->desc.crop[2] - tiles_origin(f, 0) + TILE - 1) / TILE; }
+static uint32_t tiles_down(const kiln_film *f) { return (f->desc.crop[3] - tiles_origin(f, 1) + TILE - 1) / TILE; }
 
 /* A permutation of the tiles: step through them by a number that has no factor in common with their count. */
 static size_t shuffled(const pass *p, size_t tile) {
@@ -140,24 +127,95 @@ static size_t shuffled(const pass *p, size_t tile) {
     return a == 1 ? (tile * step + (size_t)(p->shuffle >> 32) % count) % count : count - 1 - tile;
 }
 
-static void trace_tile(pass *p, size_t item, uint32_t thread) {
-    const kiln_film *f = p->film;
-    size_t tile = shuffled(p, item);
-    uint32_t x0 = (uint32_t)(tile % tiles_across(f)) * TILE, y0 = (uint32_t)(tile / tiles_across(f)) * TILE, count = 0;
-    path_sample *samples = p->workers[thread].samples;
-    for (uint32_t m = 0; m < TILE * TILE; m++) {
-        uint32_t x = x0 + even_bits(m), y = y0 + even_bits(m >> 1);
-        if (x >= f->width || y >= f->height) continue;
-        uint32_t n = f->counts[(size_t)y * f->width + x];
-        for (; n < p->target; n++) {
-            samples[count++] = (path_sample){x + f->desc.crop[0], y + f->desc.crop[1], n};
-            if (count < p->batch_size) continue;
-            if (must_stop(p, thread)) return;
-            trace(p, thread, count);
-            count = 0;
+/* A tile under way. */
+typedef struct tile {
+    pass *pass;
+    uint32_t thread, x, y;
+    uint32_t count; /* samples that wait for a batch to be full */
+} tile;
+
+/* The samples that wait, unless it is time to stop: then false. */
+static bool trace(tile *t) {
+    pass *p = t->pass;
+    pass_worker *w = &p->workers[t->thread];
+    batch *b = w->batch;
+    if (must_stop(p, t->thread)) return false;
+    ray_tape *tape = p->tapes ? tape_begin(&p->tapes[t->thread]) : NULL;
+    b->camera_rays.tape = b->bounce_rays.tape = b->shadow_rays.tape = tape;
+    stage_clock_start(&b->clock);
+    p->tracer(p->context, w->samples, t->count, b);
+    uint32_t stored = store(p, w, t->count);
+    if (tape) tape_end(tape, stored);
+    stage_clock_read(&b->clock, KILN_STAGE_FILM);
+    t->count = 0;
+    return true;
+}
+
+/* Even bits of a Morton number: neighbours in it are neighbours in the tile. */
+static uint32_t even_bits(uint32_t m) {
+    m &= 0x55555555u;
+    m = (m | m >> 1) & 0x33333333u;
+    m = (m | m >> 2) & 0x0f0f0f0fu;
+    return (m | m >> 4) & 0x00ff00ffu;
+}
+
+/* The pixel of that Morton number in the tile; does the film hold it, and where? */
+static bool find_pixel(const tile *t, uint32_t morton, path_sample *s, size_t *at) {
+    const kiln_film *f = t->pass->film;
+    s->x = t->x + even_bits(morton), s->y = t->y + even_bits(morton >> 1);
+    uint32_t x = s->x - f->desc.crop[0], y = s->y - f->desc.crop[1]; /* huge to the left and above */
+    *at = (size_t)y * f->width + x;
+    return x < f->width && y < f->height;
+}
+
+/* The fewest samples that some pixels in a row have; the target, where there are none. */
+static uint32_t fewest(const tile *t, uint32_t morton, uint32_t pixels) {
+    uint32_t least = t->pass->target;
+    for (uint32_t m = morton; m < morton + pixels; m++) {
+        path_sample s;
+        size_t at;
+        if (find_pixel(t, m, &s, &at) && t->pass->film->counts[at] < least) least = t->pass->film->counts[at];
+    }
+    return least;
+}
+
+/* LANE_GROUP samples, from the n-th on, of so many pixels. Those that are not to be had, off the film or there already,
+ * are idle. false: it is time to stop. */
+static bool add_packet(tile *t, uint32_t morton, uint32_t pixels, uint32_t n) {
+    const pass *p = t->pass;
+    uint32_t each = LANE_GROUP / pixels;
+    for (uint32_t m = morton; m < morton + pixels; m++) {
+        path_sample s;
+        size_t at;
+        bool held = find_pixel(t, m, &s, &at);
+        for (uint32_t k = n; k < n + each; k++) {
+            s.n = k;
+            s.idle = !held || k >= p->target || k < p->film->counts[at];
+            p->workers[t->thread].samples[t->count++] = s;
         }
     }
-    if (count && !must_stop(p, thread)) trace(p, thread, count);
+    return t->count < p->batch_size || trace(t);
+}
+
+/* Camera rays run in packets of which Embree makes one beam, so what a packet holds must not depend on how a picture is
+ * shared out: the first FIRST samples stand side by side with those of a block of pixels, so that no lane is idle in a
+ * picture of one sample; later ones in FOURs, with those of a quarter of it, which makes for a narrower beam. */
+static void trace_tile(pass *p, size_t item, uint32_t thread) {
+    enum { FIRST = 4, PIXELS = BLOCK * BLOCK, QUARTER = PIXELS / 4, EACH = LANE_GROUP / QUARTER };
+    size_t number = shuffled(p, item), across = tiles_across(p->film);
+    tile t = {.pass = p, .thread = thread,
+              .x = tiles_origin(p->film, 0) + (uint32_t)(number % across) * TILE,
+              .y = tiles_origin(p->film, 1) + (uint32_t)(number / across) * TILE};
+    for (uint32_t m = 0; m < TILE * TILE; m += PIXELS) {
+        for (uint32_t n = fewest(&t, m, PIXELS); n < p->target && n < FIRST; n++)
+            if (!add_packet(&t, m, PIXELS, n)) return;
+        for (uint32_t q = m; q < m + PIXELS; q += QUARTER) {
+            uint32_t n = fewest(&t, q, QUARTER) / EACH * EACH;
+            for (n = n < FIRST ? FIRST : n; n < p->target; n += EACH)
+                if (!add_packet(&t, q, QUARTER, n)) return;
+        }
+    }
+    if (t.count) (void)trace(&t);
 }
 
 static void run_tile(void *context, size_t item, uint32_t thread) {

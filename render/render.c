@@ -120,6 +120,7 @@ static uint32_t next_target(const run *r) {
     if (r->options->budget_seconds > 0 && spp > r->spp_before) {
         double each = seconds(r) / (spp - r->spp_before), step = 0.1 * r->options->budget_seconds / each;
         if (spp + step < next) next = spp + (step > 1 ? (uint32_t)step : 1);
+        if (next > 4) next = (next + 3) / 4 * 4; /* which packets of camera rays hold */
     }
     return next < r->spp_limit ? next : r->spp_limit;
 }
@@ -208,7 +209,7 @@ static bool render(const kiln_renderer *renderer, const kiln_render_options *o, 
     r.pass = (pass){.context = context, .film = film, .threads = renderer->threads, .cancel = o->cancel, .tick = tick,
                     .tick_user = &r,
                     .tapes = tapes, .shuffle = o->tile_shuffle,
-                    .batch_size = o->batch_size && o->batch_size < BATCH_PATHS ? o->batch_size : BATCH_PATHS,
+                    .batch_size = o->batch_size && o->batch_size < BATCH_PATHS ? lanes_round_up(o->batch_size) : BATCH_PATHS,
                     .deadline = o->budget_seconds > 0 ? r.started + o->budget_seconds : 0};
     r.pass.tracer = path_choose_tracer(o->isa, NULL);
     if (!r.pass.tracer)

@@ -137,7 +137,7 @@ typedef struct kiln_render_options {
                                     or from any thread by an atomic store [never] */
     void (*progress)(const kiln_progress *, void *user); /* from the calling thread, about ten times a second */
     void *progress_user;
-    uint32_t batch_size;         /* for tests: paths that advance together [1024] */
+    uint32_t batch_size;         /* for tests: paths that advance together, rounded up to 16s [1024] */
     uint64_t tile_shuffle;       /* for tests: another order of tiles, same bits [none] */
     const char *isa;             /* for tests: "v2", "v3", "v4": which instance of the stages runs, same bits [the best] */
 } kiln_render_options;

@@ -38,6 +38,9 @@ typedef struct ray_lanes {
     ray_coverage coverage;
     const uint32_t *lanes;     /* NULL: 0 … count − 1 */
     uint32_t count;
+    /* For the closest hit: each sixteen in a row run nearly alike, and always are the same sixteen: Embree then takes
+     * them as one beam, in which ties between surfaces may depend on what else is in it. */
+    bool coherent;
 } ray_lanes;
 
 typedef struct trace_counts {

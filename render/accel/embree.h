@@ -17,7 +17,9 @@ typedef struct RTCRayQueryContext embree_context;
 /* Packets of 16, and nothing else: one width gives the same bits whatever the number of rays (docs/estimator.md). */
 #if KILN_EMBREE_MAJOR == 3
 static inline void embree_init_context(embree_context *c) { rtcInitIntersectContext(c); }
-static inline void embree_intersect16(const int *valid, RTCScene scene, embree_context *c, struct RTCRayHit16 *rays) {
+static inline void embree_intersect16(const int *valid, RTCScene scene, embree_context *c, bool coherent,
+                                      struct RTCRayHit16 *rays) {
+    c->flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     rtcIntersect16(valid, scene, c, rays);
 }
 static inline void embree_occluded16(const int *valid, RTCScene scene, embree_context *c, struct RTCRay16 *rays) {
@@ -31,10 +33,12 @@ static inline void embree_visit16(const int *valid, RTCScene scene, embree_conte
 }
 #else
 static inline void embree_init_context(embree_context *c) { rtcInitRayQueryContext(c); }
-static inline void embree_intersect16(const int *valid, RTCScene scene, embree_context *c, struct RTCRayHit16 *rays) {
+static inline void embree_intersect16(const int *valid, RTCScene scene, embree_context *c, bool coherent,
+                                      struct RTCRayHit16 *rays) {
     struct RTCIntersectArguments args;
     rtcInitIntersectArguments(&args);
     args.context = c;
+    args.flags = coherent ? RTC_RAY_QUERY_FLAG_COHERENT : RTC_RAY_QUERY_FLAG_INCOHERENT;
     rtcIntersect16(valid, scene, rays, &args);
 }
 static inline void embree_occluded16(const int *valid, RTCScene scene, embree_context *c, struct RTCRay16 *rays) {

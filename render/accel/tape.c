@@ -81,7 +81,7 @@ tape_totals tapes_count(const ray_tape *tapes, uint32_t count) {
         sum.samples += tapes[t].samples;
         for (size_t i = 0; i < tapes[t].whole; i++) {
             const tape_packet *p = &tapes[t].packets[i];
-            *(p->query == TAPE_CLOSEST ? &sum.closest_rays : &sum.occlusion_rays) +=
+            *(p->query <= TAPE_CLOSEST ? &sum.closest_rays : &sum.occlusion_rays) +=
                 (uint64_t)__builtin_popcount(p->valid);
         }
     }
@@ -100,9 +100,9 @@ static void trace(const world *w, const tape_packet *p, coverage_context *contex
     packet->ray = p->ray;
     for (int k = 0; k < WIDTH; k++) valid[k] = p->valid >> k & 1 ? -1 : 0;
     context->coverage = &coverage;
-    if (p->query == TAPE_CLOSEST) {
+    if (p->query <= TAPE_CLOSEST) {
         for (int k = 0; k < WIDTH; k++) packet->hit.geomID[k] = packet->hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
-        embree_intersect16(valid, scene, &context->embree, packet);
+        embree_intersect16(valid, scene, &context->embree, p->query == TAPE_BEAM, packet);
     } else if (p->query == TAPE_VISIT) {
         embree_visit16(valid, scene, &context->embree, look_on, &packet->ray);
         embree_init_context(&context->embree); /* where Embree 3 leaves the filter */

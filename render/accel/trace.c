@@ -126,8 +126,8 @@ void accel_closest(const world *w, const ray_lanes *rays, float *t, float *u, fl
             r.hit.primID[k] = 0;
             r.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
         }
-        tape_packet *kept = keep(counts, TAPE_CLOSEST, &r.ray, &p, &rays->coverage);
-        embree_intersect16(p.valid, w->accel->scene, &context.embree, &r);
+        tape_packet *kept = keep(counts, rays->coherent ? TAPE_BEAM : TAPE_CLOSEST, &r.ray, &p, &rays->coverage);
+        embree_intersect16(p.valid, w->accel->scene, &context.embree, rays->coherent, &r);
         if (kept) tape_met(kept, &r.ray);
         if (p.in_order && w->instance_count == 1) {
             memcpy(t + first, r.ray.tfar, sizeof r.ray.tfar);

@@ -210,6 +210,8 @@ static inline lane_range lanes_with(const batch *b, unsigned term) {
     return (lane_range){b->kinds[kernel_for(term)].first, b->surfaces};
 }
 
+static inline uint32_t lanes_round_up(uint32_t n) { return (n + LANE_GROUP - 1) / LANE_GROUP * LANE_GROUP; }
+
 /* In front of a loop over lanes: iterations are independent. */
 #define LANE_LOOP _Pragma("GCC ivdep") for
 

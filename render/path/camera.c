@@ -23,7 +23,8 @@ static float focus_on_middle(const world *w, const camera *c) {
     float t, u, v;
     uint32_t triangle, instance;
     trace_counts counts = {0};
-    ray_lanes ray = {&c->origin.x, &c->origin.y, &c->origin.z, &d.x, &d.y, &d.z, &c->near, &c->far, {0}, NULL, 1};
+    ray_lanes ray = {&c->origin.x, &c->origin.y, &c->origin.z, &d.x, &d.y, &d.z, &c->near, &c->far, {0}, NULL, 1,
+                     false};
     accel_closest(w, &ray, &t, &u, &v, &triangle, &instance, &counts);
     return triangle < TRIANGLE_REFUSED && t > 0 ? t : fmaxf(v3_length(c->origin), w->radius);
 }
@@ -99,7 +100,7 @@ uint64_t camera_media(const world *w, const camera *c) {
     media_count m = {w, dx, dy, dz, array_alloc((size_t)MEDIA_RAYS * w->media_count, sizeof(int32_t))};
     if (!m.counts) return 0; /* a few kilobytes for each medium: the film will not be had either */
     trace_counts uncounted = {0};
-    ray_lanes rays = {ox, oy, oz, dx, dy, dz, NULL, NULL, {0}, NULL, MEDIA_RAYS};
+    ray_lanes rays = {ox, oy, oz, dx, dy, dz, NULL, NULL, {0}, NULL, MEDIA_RAYS, false};
     accel_visit(w, &rays, count_crossing, &m, &uncounted);
     uint64_t media = vote(w, m.counts);
     free(m.counts);

@@ -36,7 +36,10 @@ typedef struct path_context {
 } path_context;
 
 /* One sample of one pixel. */
-typedef struct path_sample { uint32_t x, y, n; } path_sample;
+typedef struct path_sample {
+    uint32_t x, y, n;
+    bool idle; /* it only completes a packet of camera rays: nothing comes of it */
+} path_sample;
 
 /* The wavelength that a path of a world with a spectrum takes on: of the sample, whenever that is. */
 static inline spectrum_line path_wavelength(const path_context *c, sample_point p) {
@@ -49,7 +52,8 @@ static inline float path_light_probability(const path_context *c, uint32_t which
     return c->samples_lights ? 1.0f : 0.0f;
 }
 
-/* Traces count ≤ BATCH_PATHS samples to their end; b->out then holds their results by position in samples. */
+/* Traces count ≤ BATCH_PATHS samples to their end; b->out then holds their results by position in samples. Each sixteen
+ * in a row are a packet of camera rays: which they are must be a matter of pixels and samples alone (ray_lanes.coherent). */
 typedef void path_tracer(const path_context *, const path_sample *samples, uint32_t count, batch *);
 
 /* The same code, compiled for x86-64-v2, v3 and v4: the wanted one, or for NULL the best that this machine has, with its

@@ -55,7 +55,7 @@ void STAGE(camera)(const path_context *c, const path_sample *samples, uint32_t c
     for (uint32_t i = 0; i < b->n; i++) {
         const path_sample *sample = &samples[i < count ? i : 0];
         sample_point p = sample_point_make(c->seed, sample->y << 16 | sample->x, sample->n);
-        s->slot[i] = i < count ? i : SLOT_NOWHERE;
+        s->slot[i] = i < count && !sample->idle ? i : SLOT_NOWHERE;
         s->seed[i] = p.seed;
         s->index[i] = p.index;
         b->out.refused[s->slot[i]] = 0;

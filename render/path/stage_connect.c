@@ -75,7 +75,8 @@ void STAGE(connect)(const path_context *c, batch *b) {
     }
     stage_clock_read(&b->clock, KILN_STAGE_CONNECT);
     ray_coverage coverage = {s->seed, s->index, sample_key(SAMPLE_LIGHT_FINE, b->depth), c->independent};
-    ray_lanes rays = {x->sox, x->soy, x->soz, x->sdx, x->sdy, x->sdz, NULL, x->tfar, coverage, x->list, count};
+    ray_lanes rays = {x->sox, x->soy, x->soz, x->sdx, x->sdy, x->sdz, NULL, x->tfar, coverage, x->list, count,
+                      false};
     accel_visible(c->world, &rays, x->visible, &b->shadow_rays);
     stage_clock_read(&b->clock, KILN_STAGE_SHADOW_RAYS);
     for (uint32_t k = 0; k < count; k++)

@@ -37,7 +37,8 @@ void STAGE(touch)(const path_context *c, batch *b) {
     path_scratch *x = &b->scratch;
     uint32_t count = list_solids(w, b);
     ray_coverage coverage = {s->seed, s->index, sample_key(SAMPLE_COVERAGE, b->depth), c->independent};
-    ray_lanes rays = {s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, x->tnear, x->tfar, coverage, x->list, count};
+    ray_lanes rays = {s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, x->tnear, x->tfar, coverage, x->list, count,
+                      false};
     visit v = {w, s, x->touches};
     trace_counts uncounted = {.tape = b->bounce_rays.tape}; /* a part of the trace before */
     accel_visit(w, &rays, add, &v, &uncounted);

@@ -28,6 +28,7 @@ static void look_through(const path_context *c, batch *b, ray_lanes *rays) {
         }
         count = kept;
         rays->lanes = x->list;
+        rays->coherent = false;
         rays->count = count;
         if (count) accel_closest(c->world, rays, h->t, h->u, h->v, h->triangle, h->instance, &b->camera_rays);
     }
@@ -40,7 +41,7 @@ void STAGE(trace)(const path_context *c, batch *b) {
     bool first = b->depth == 0;
     ray_coverage coverage = {s->seed, s->index, sample_key(SAMPLE_COVERAGE, b->depth), c->independent};
     ray_lanes rays = {s->ox, s->oy, s->oz, s->dx, s->dy, s->dz, first ? x->tnear : NULL, first ? x->tfar : NULL,
-                      coverage, NULL, b->n};
+                      coverage, NULL, b->n, first};
     accel_closest(c->world, &rays, h->t, h->u, h->v, h->triangle, h->instance, first ? &b->camera_rays : &b->bounce_rays);
     if (first && HAS(c->effects, CULLING)) look_through(c, b, &rays);
 }

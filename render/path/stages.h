@@ -85,6 +85,4 @@ static inline void batch_flush(batch *b, uint32_t lane) {
     (beyond ? b->out.beyond_b : b->out.b)[slot] = s->lb[lane];
 }
 
-static inline uint32_t lanes_round_up(uint32_t n) { return (n + LANE_GROUP - 1) / LANE_GROUP * LANE_GROUP; }
-
 #endif

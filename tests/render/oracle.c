@@ -103,7 +103,7 @@ static uint64_t merge(const path_context *c, const path *p, ray_crossing *met) {
     touch_add(&t, w, p->direction, met);
     trace_counts counts = {0};
     ray_lanes ray = {&p->origin.x, &p->origin.y, &p->origin.z, &p->direction.x, &p->direction.y, &p->direction.z,
-                     &near, &far, coverage_of(c, p, SAMPLE_COVERAGE), NULL, 1};
+                     &near, &far, coverage_of(c, p, SAMPLE_COVERAGE), NULL, 1, false};
     touch_visit visit = {w, p->direction, &t};
     accel_visit(w, &ray, add_touch, &visit, &counts);
     *met = t.shaded;
@@ -116,7 +116,7 @@ static bool find(const path_context *c, path *p, hit *h) {
     trace_counts counts = {0};
     float near = p->depth ? 0x1p-126f : p->near, far = p->depth ? INFINITY : p->far;
     ray_lanes ray = {&p->origin.x, &p->origin.y, &p->origin.z, &p->direction.x, &p->direction.y, &p->direction.z,
-                     &near, &far, coverage_of(c, p, SAMPLE_COVERAGE), NULL, 1};
+                     &near, &far, coverage_of(c, p, SAMPLE_COVERAGE), NULL, 1, false};
     ray_crossing met;
     do {
         accel_closest(w, &ray, &met.t, &met.u, &met.v, &met.triangle, &met.instance, &counts);
@@ -355,7 +355,7 @@ static void reach(const path_context *c, path *p, const shading_connection *n, u
     uint32_t visible = RAY_STOPPED;
     trace_counts counts = {0};
     ray_lanes ray = {&n->origin.x, &n->origin.y, &n->origin.z, &n->direction.x, &n->direction.y, &n->direction.z,
-                     NULL, &n->far, coverage_of(c, p, SAMPLE_LIGHT_FINE), NULL, 1};
+                     NULL, &n->far, coverage_of(c, p, SAMPLE_LIGHT_FINE), NULL, 1, false};
     accel_visible(w, &ray, &visible, &counts);
     if (visible == RAY_REACHES) p->radiance = v3_add(p->radiance, sum);
 }

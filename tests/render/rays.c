@@ -25,7 +25,7 @@ void rays_set(rays *r, uint32_t i, vec3 o, vec3 d) {
     r->dx[i] = d.x, r->dy[i] = d.y, r->dz[i] = d.z;
 }
 static ray_lanes lanes(const rays *r, const uint32_t *list, uint32_t count) {
-    return (ray_lanes){r->ox, r->oy, r->oz, r->dx, r->dy, r->dz, r->tnear, r->tfar, {0}, list, count};
+    return (ray_lanes){r->ox, r->oy, r->oz, r->dx, r->dy, r->dz, r->tnear, r->tfar, {0}, list, count, false};
 }
 void rays_closest(const world *w, rays *r, const uint32_t *list, uint32_t count) {
     ray_lanes l = lanes(r, list, count);

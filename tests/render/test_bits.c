@@ -82,8 +82,8 @@ static void by_threads(void **state) {
     compare(*state, 7, (kiln_render_options){0});
 }
 static void by_batch(void **state) {
-    const uint32_t sizes[] = {1, 16, 17, 64, 1000};
-    for (int i = 0; i < 5; i++) compare(*state, 2, (kiln_render_options){.batch_size = sizes[i]});
+    const uint32_t sizes[] = {1, 17, 64, 1000};
+    for (int i = 0; i < 4; i++) compare(*state, 2, (kiln_render_options){.batch_size = sizes[i]});
 }
 static void by_order_of_tiles(void **state) {
     for (uint64_t seed = 1; seed < 5; seed++)
@@ -112,7 +112,7 @@ static void by_crop(void **state) {
     picture_free(&whole);
 }
 
-/* 16 samples at once, and 4 + 12 into the same film. */
+/* 16 samples at once, and 5 + 11 into the same film. */
 static void in_several_goes(void **state) {
     stage *s = *state;
     kiln_renderer *renderer;
@@ -121,7 +121,7 @@ static void in_several_goes(void **state) {
     kiln_film_desc desc = {.width = WIDTH, .height = HEIGHT, .aovs = all_aovs, .mattes = all_mattes, .parts = parts,
                            .part_count = PARTS};
     picture once = render_with(renderer, &o, &desc, s->scene.report);
-    o.spp = 4;
+    o.spp = 5; /* within a packet of four samples */
     picture twice = render_with(renderer, &o, &desc, s->scene.report);
     o.spp = 16;
     must(kiln_render(renderer, &o, twice.film, NULL, s->scene.report), s->scene.report, "rendering on");
@@ -130,6 +130,34 @@ static void in_several_goes(void **state) {
     picture_free(&once);
     picture_free(&twice);
     kiln_renderer_destroy(renderer);
+}
+
+/* Sheets of light in one plane, at coordinates so round that the distance to all of them is the same to the bit: which
+ * is seen is settled by the order in which Embree comes to them, and that by the rays beside. */
+static scene_builder sheets(void) {
+    enum { SHEETS = 40 };
+    scene_builder b = builder_make();
+    for (uint32_t i = 0; i < SHEETS; i++) {
+        uint32_t h = hash_pair(7, i);
+        float x = (float)(h % 64) / 32 - 1, y = (float)(h / 64 % 64) / 32 - 1, w = (h >> 12 & 1) ? 1 : 0.5f;
+        kiln_material m = diffuse_material(0, 0, 0);
+        for (int k = 0; k < 3; k++) m.emission.value[k] = (float)(h >> (14 + 5 * k) & 31);
+        add_quad(&b, add_material(&b, &m), (float[]){x, y, 0, x + w, y, 0, x + w, y + w, 0, x, y + w, 0});
+    }
+    kiln_light lamp = light_at(KILN_LIGHT_POINT, (float[]){0, 0, 8}, (float[]){0, 0, 0}, 1); /* parts name it */
+    add_light(&b, &lamp);
+    must(kiln_scene_commit(b.scene, b.report), b.report, "committing");
+    return b;
+}
+
+static void ties_are_settled_alike(void **state) {
+    (void)state;
+    stage s = {sheets(), camera_at((float[]){0.25f, 0.25f, 4}, (float[]){0.25f, 0.25f, 0}, 40)};
+    void *there = &s;
+    by_batch(&there);
+    by_crop(&there);
+    in_several_goes(&there);
+    builder_free(&s.scene);
 }
 
 /* Another seed is another picture: the comparisons above compare something. */
@@ -144,6 +172,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(by_threads), cmocka_unit_test(by_batch),        cmocka_unit_test(by_order_of_tiles),
         cmocka_unit_test(by_instance), cmocka_unit_test(by_crop),        cmocka_unit_test(in_several_goes),
-        cmocka_unit_test(another_seed_differs)};
+        cmocka_unit_test(ties_are_settled_alike), cmocka_unit_test(another_seed_differs)};
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

@@ -114,7 +114,7 @@ static double share_stopped(const world *w, float x, uint32_t seed, int independ
         seeds[i] = seed, indices[i] = i;
     }
     trace_counts counts = {0};
-    ray_lanes rays = {ox, oy, oz, dx, dy, dz, NULL, NULL, {seeds, indices, 7, independent}, NULL, RAYS};
+    ray_lanes rays = {ox, oy, oz, dx, dy, dz, NULL, NULL, {seeds, indices, 7, independent}, NULL, RAYS, false};
     accel_visible(w, &rays, visible, &counts);
     double stopped = 0;
     for (int i = 0; i < RAYS; i++) stopped += visible[i] == RAY_STOPPED;

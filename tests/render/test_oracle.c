@@ -29,7 +29,7 @@ static void compare(const path_context *c, const char *isa) {
         return;
     }
     for (uint32_t i = 0; i < SIDE * SIDE * SPP; i++) {
-        samples[count++] = (path_sample){i / SPP % SIDE, i / SPP / SIDE, i % SPP};
+        samples[count++] = (path_sample){i / SPP % SIDE, i / SPP / SIDE, i % SPP, false};
         if (count < BATCH_PATHS && i + 1 < SIDE * SIDE * SPP) continue;
         tracer(c, samples, count, b);
         for (uint32_t k = 0; k < count; k++) {

@@ -134,7 +134,7 @@ static void refused_camera_rays_see_nothing(void **state) {
     pixel_filter_make(&c.filter, KILN_PIXEL_BOX, 1e30);
     batch *b = aligned_array(1, sizeof *b);
     path_sample samples[64];
-    for (uint32_t i = 0; i < 64; i++) samples[i] = (path_sample){i % 8, i / 8, 0};
+    for (uint32_t i = 0; i < 64; i++) samples[i] = (path_sample){i % 8, i / 8, 0, false};
     path_choose_tracer(NULL, NULL)(&c, samples, 64, b);
     for (int i = 0; i < 64; i++) {
         assert_int_equal(b->out.refused[i], 1);
