@@ -76,27 +76,41 @@ static void check_aovs(const pass *p, pass_worker *w, const path_sample *at, fil
     for (int k = 0; k < 3; k++) s->albedo[k] = s->normal[k] = s->position[k] = 0.0f;
 }
 
+/* What the sample says of the first surface. */
+static void read_surface(const path_output *o, uint32_t i, film_sample *s) {
+    s->depth = o->depth[i];
+    s->object = o->object[i], s->material = o->material[i];
+    for (int k = 0; k < 2; k++) s->uv[k] = o->uv[k][i];
+    for (int k = 0; k < 3; k++)
+        s->albedo[k] = o->albedo[k][i], s->normal[k] = o->normal[k][i], s->position[k] = o->position[k][i];
+}
+
+static void add_beyond(pass_worker *w, uint32_t i) {
+    const path_output *o = &w->batch->out;
+    const float beyond[3] = {o->beyond_r[i], o->beyond_g[i], o->beyond_b[i]};
+    if (beyond[0] == 0.0f && beyond[1] == 0.0f && beyond[2] == 0.0f) return; /* as most are */
+    for (int k = 0; k < 3; k++)
+        if (fixed_fits(beyond[k])) w->beyond[k] += fixed_from_float(beyond[k]);
+}
+
 /* Into the film; returns how many samples that were. */
 static uint32_t store(const pass *p, pass_worker *w, uint32_t count) {
     const path_output *o = &w->batch->out;
+    const path_context *c = p->context;
     const uint32_t *crop = p->film->desc.crop;
     uint32_t stored = 0;
     for (uint32_t i = 0; i < count; i++) {
         const path_sample *at = &w->samples[i];
         if (at->idle) continue;
         stored++;
-        film_sample s = {.radiance = {o->r[i], o->g[i], o->b[i]}, .alpha = o->alpha[i], .depth = o->depth[i],
-                         .uv = {o->uv[0][i], o->uv[1][i]}, .object = o->object[i], .material = o->material[i]};
-        for (int k = 0; k < 3; k++)
-            s.albedo[k] = o->albedo[k][i], s.normal[k] = o->normal[k][i], s.position[k] = o->position[k][i];
-        if (p->context->parts) s.parts = w->batch->parts->sums + (size_t)i * p->context->parts->count;
+        film_sample s = {.radiance = {o->r[i], o->g[i], o->b[i]}, .alpha = o->alpha[i]};
+        if (c->aovs || c->handles) read_surface(o, i, &s);
+        if (c->parts) s.parts = w->batch->parts->sums + (size_t)i * c->parts->count;
         if (o->refused[i]) discard(p, w, KILN_DISCARD_RAY, at);
         check_radiance(p, w, at, &s);
-        if (s.alpha > 0.0f) check_aovs(p, w, at, &s);
+        if ((c->aovs || c->handles) && s.alpha > 0.0f) check_aovs(p, w, at, &s);
         film_add(p->film, at->x - crop[0], at->y - crop[1], &s);
-        const float beyond[3] = {o->beyond_r[i], o->beyond_g[i], o->beyond_b[i]};
-        for (int k = 0; k < 3; k++)
-            if (fixed_fits(beyond[k])) w->beyond[k] += fixed_from_float(beyond[k]);
+        add_beyond(w, i);
     }
     atomic_fetch_add_explicit(&w->traced, stored, memory_order_relaxed);
     return stored;

@@ -1,3 +1,5 @@
+#include <string.h>
+
 #include "render/path/cone.h"
 #include "render/path/stages.h"
 #include "render/world/lookup.h"
@@ -96,8 +98,13 @@ static void apply_anisotropy(const world_material *m, path_scratch *x, uint32_t 
     x->along_v[i] = u * m->anisotropy_y + v * m->anisotropy_x;
 }
 
-/* A texture as one lane sees it; NULL: its material has none. */
-typedef struct view { const world_texture *texture; texture_tap tap; } view;
+static void roughen(const world_material *m, float *roughness, float share) {
+    *roughness *= share;
+    if (m->flags & MATERIAL_GLOSSINESS) *roughness = 1.0f - *roughness;
+}
+
+/* A texture as one lane sees it; NULL: its material has none. second: another channel that the same look-up serves. */
+typedef struct view { const world_texture *texture, *second; texture_tap tap; } view;
 
 static texel texel_of(const view *t) { return texture_read(t->texture, &t->tap); }
 static float channel_of(const view *t) { return texture_read_channel(t->texture, &t->tap); }
@@ -111,11 +118,37 @@ static void bend(const view *t, float scale, float *x, float *y, float *z) {
     *x = n.x, *y = n.y, *z = n.z;
 }
 
+static const world_texture *texture_of(const world *w, uint32_t material, material_slot slot) {
+    uint32_t handle = w->materials[material].texture[slot];
+    return handle ? &w->textures[handle - 1] : NULL;
+}
+
+/* Do they differ by the channel alone? */
+static bool is_same_place(const world_texture *a, const world_texture *b) {
+    return a->texels == b->texels && a->levels == b->levels && a->wrap_u == b->wrap_u && a->wrap_v == b->wrap_v &&
+           a->nearest == b->nearest && a->uv_set == b->uv_set &&
+           memcmp(a->transform, b->transform, sizeof a->transform) == 0;
+}
+
+/* The roughness that metalness' look-up finds in another channel, as glTF has it; NULL: it is elsewhere. Of the material
+ * that was asked for last, which most neighbours share. */
+typedef struct beside { uint32_t material; const world_texture *roughness; } beside;
+
+static const world_texture *roughness_beside(const world *w, uint32_t material, beside *known) {
+    if (known->material == material) return known->roughness;
+    const world_texture *a = texture_of(w, material, SLOT_METALLIC), *b = texture_of(w, material, SLOT_ROUGHNESS);
+    *known = (beside){material, a && b && is_same_place(a, b) ? b : NULL};
+    return known->roughness;
+}
+
 /* Finds what the lane will read, and tells the caches. */
-static void look(const world *w, const path_hit *h, const path_scratch *x, uint32_t i, material_slot slot, view *t) {
-    uint32_t handle = w->materials[x->material[i]].texture[slot];
-    t->texture = handle ? &w->textures[handle - 1] : NULL;
-    if (!handle) return;
+static void look(const world *w, const path_hit *h, const path_scratch *x, uint32_t i, material_slot slot, beside *known,
+                 view *t) {
+    bool shares = slot == SLOT_METALLIC || slot == SLOT_ROUGHNESS;
+    t->texture = texture_of(w, x->material[i], slot);
+    t->second = t->texture && shares ? roughness_beside(w, x->material[i], known) : NULL;
+    if (t->second && slot == SLOT_ROUGHNESS) t->texture = NULL; /* it was there before */
+    if (!t->texture) return;
     uint32_t set = t->texture->uv_set;
     vec2 at = {h->u[i], h->v[i]}, uv = set ? lookup_uv(w, h->triangle[i], set, at) : (vec2){x->tu[i], x->tv[i]};
     int32_t level = t->texture->levels ? texture_level(t->texture, footprint(w, h, x, i, set)) : 0;
@@ -132,11 +165,11 @@ static void apply_texture(const world *w, const path_hit *h, path_scratch *x, ui
     case SLOT_SPECULAR_COLOR: tint(t, &x->tint_r[i], &x->tint_g[i], &x->tint_b[i]); break;
     case SLOT_SHEEN_COLOR: tint(t, &x->sheen_r[i], &x->sheen_g[i], &x->sheen_b[i]); break;
     case SLOT_DIFFUSE_TRANSMISSION_COLOR: tint(t, &x->pass_r[i], &x->pass_g[i], &x->pass_b[i]); break;
-    case SLOT_METALLIC: x->metallic[i] *= channel_of(t); break;
-    case SLOT_ROUGHNESS:
-        x->roughness[i] *= channel_of(t);
-        if (m->flags & MATERIAL_GLOSSINESS) x->roughness[i] = 1.0f - x->roughness[i];
+    case SLOT_METALLIC:
+        x->metallic[i] *= channel_of(t);
+        if (t->second) roughen(m, &x->roughness[i], texture_read_channel(t->second, &t->tap));
         break;
+    case SLOT_ROUGHNESS: roughen(m, &x->roughness[i], channel_of(t)); break;
     case SLOT_SPECULAR: x->specular[i] *= channel_of(t); break;
     case SLOT_TRANSMISSION: x->transmission[i] *= channel_of(t); break;
     case SLOT_CLEARCOAT: x->clearcoat[i] *= channel_of(t); break;
@@ -165,10 +198,11 @@ enum { VIEWS = 16 };
 
 static void apply_slot(const world *w, const path_hit *h, path_scratch *x, uint32_t n, material_slot slot) {
     view views[VIEWS];
+    beside known = {UINT32_MAX, NULL};
     for (uint32_t i = 0; i < n + VIEWS; i++) {
         view *t = &views[i % VIEWS];
         if (i >= VIEWS && t->texture) apply_texture(w, h, x, i - VIEWS, slot, t);
-        if (i < n) look(w, h, x, i, slot, t);
+        if (i < n) look(w, h, x, i, slot, &known, t);
     }
 }
 
