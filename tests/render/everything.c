@@ -189,7 +189,10 @@ void add_everything(scene_builder *b) {
     const double lamp[1][16] = {{.3, 0, 0, 0, 0, -.3, 0, 0, 0, 0, -.3, 0, 0, 2.6, 0, 1}};
     const double sign[1][16] = {{.3, 0, 0, 0, 0, 0, .3, 0, 0, -.3, 0, 0, 1.6, .5, -1, 1}};
     kiln_material floor = diffuse_material(0.6f, 0.5f, 0.4f), metal = kiln_material_default();
+    kiln_id both = noise_image(b, 10, 60, 255); /* one look-up finds both */
     metal.roughness.value = 0.2f, metal.base_color.value[2] = 0.4f;
+    metal.metallic.texture = texture(both, 2, 0, KILN_TRANSFER_DATA);
+    metal.roughness.texture = texture(both, 1, 0, KILN_TRANSFER_DATA);
     kiln_material mirror = kiln_material_default();
     mirror.roughness.value = 0;
     kiln_material film = kiln_material_default();
