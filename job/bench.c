@@ -123,7 +123,7 @@ bool bench(job_run *r, const char *scene_file, json_t **json) {
     put(*json, "machine", stats_machine(r->options->threads));
     put(*json, "versions", stats_versions());
     bool done = bench_check_growth(r->options, r->report) &&
-                (scene_file || bench_make_scene(BENCH_TRIANGLES, 1, &scene, r->report)) && bench_prepare(r, scene) &&
+                (scene_file || bench_make_scene(BENCH_TRIANGLES, 1, 0, &scene, r->report)) && bench_prepare(r, scene) &&
                 measure(r, &f);
     run_phase(r, NULL);
     if (done) describe(r, &f, *json);

@@ -12,8 +12,9 @@
  * started; *json is filled in where that fails too, as far as it went. */
 bool bench(job_run *, const char *scene_file, json_t **json);
 
-/* bench_scene.c: a bumpy ring of about this many triangles, so often, on a table. The caller destroys the scene. */
-bool bench_make_scene(uint64_t triangles, uint32_t copies, kiln_scene **, kiln_report *);
+/* bench_scene.c: a bumpy ring of about this many triangles, so often, on a table, under so many lamps, which together
+ * are as bright as one; 0: none. The caller destroys the scene. */
+bool bench_make_scene(uint64_t triangles, uint32_t copies, uint32_t lamps, kiln_scene **, kiln_report *);
 enum { BENCH_TRIANGLES = 100000 }; /* of the one ring that stands for a scene */
 
 /* The steps of a render up to the first ray. The run takes scene over; NULL: its source is a file. */

@@ -1,5 +1,5 @@
 /* How time and memory grow, one quantity at a time. Numbers of pixels, scattering events and threads vary for the scene
- * of the run, those of triangles and instances for generated ones. */
+ * of the run, those of triangles, instances and lights for generated ones. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,7 +11,7 @@
 
 enum { VALUES_MAX = 8, COPY_TRIANGLES = 1000, SIDE = 512, SPP = 4 };
 
-typedef enum axis_kind { PIXELS, TRIANGLES, INSTANCES, DEPTH, THREADS, AXES } axis_kind;
+typedef enum axis_kind { PIXELS, TRIANGLES, INSTANCES, LIGHTS, DEPTH, THREADS, AXES } axis_kind;
 
 static const struct axis {
     const char *name;
@@ -20,6 +20,7 @@ static const struct axis {
     [PIXELS] = {"pixels", {1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20, 1 << 22}},
     [TRIANGLES] = {"triangles", {1e4, 1e5, 1e6, 1e7, 2e7}},
     [INSTANCES] = {"instances", {1, 10, 100, 1000, 1e4, 1e5}},
+    [LIGHTS] = {"lights", {1, 10, 100, 1000, 1e4, 1e5}},
     [DEPTH] = {"depth", {1, 2, 4, 8, 16, 32, 64}},
     [THREADS] = {"threads", {1, 2, 4, 8, 16, 32, 64, 128}},
 };
@@ -60,7 +61,7 @@ bool bench_check_growth(const job_options *o, kiln_report *report) {
     kiln_where where = where_root("--growth");
     if (!o->growth || parse(o->growth, &p)) return true;
     return report_error(report, KILN_CODE_USAGE, &where, "such as all, or pixels,triangles:1e6",
-                        "'%s' is not a list of pixels, triangles, instances, depth, threads, or all, each with or "
+                        "'%s' is not a list of pixels, triangles, instances, lights, depth, threads, or all, each with or "
                         "without a limit",
                         o->growth);
 }
@@ -73,8 +74,10 @@ static void set_axis(axis_kind axis, double value, job_options *o) {
     case THREADS: o->threads = (uint32_t)value; break;
     case TRIANGLES:
     case INSTANCES:
+    case LIGHTS:
         o->subdivide = (job_subdivision){.mode = KILN_SUBDIVIDE_OFF};
         o->camera = NULL;
+        if (axis == LIGHTS) o->env = "none";
         break;
     case AXES: break;
     }
@@ -108,13 +111,14 @@ static bool measure(const job_run *of, const char *scene_file, axis_kind axis, d
     kiln_render_stats stats;
     if (!options.size[0]) options.size[0] = options.size[1] = SIDE;
     set_axis(axis, value, &options);
-    bool generated = axis == TRIANGLES || axis == INSTANCES || !scene_file;
+    bool generated = axis == TRIANGLES || axis == INSTANCES || axis == LIGHTS || !scene_file;
     uint64_t triangles = axis == INSTANCES ? COPY_TRIANGLES : axis == TRIANGLES ? (uint64_t)value : BENCH_TRIANGLES;
     machine_forget_peak();
     double began = clock_seconds();
     bool done = run_start(&r, &options, &events, generated ? "generated" : scene_file, of->report) &&
                 (!generated ||
-                 bench_make_scene(triangles, axis == INSTANCES ? (uint32_t)value : 1, &scene, of->report));
+                 bench_make_scene(triangles, axis == INSTANCES ? (uint32_t)value : 1, axis == LIGHTS ? (uint32_t)value : 0,
+                                  &scene, of->report));
     double made = clock_seconds() - began;
     done = done && bench_prepare(&r, scene) && run_phase(&r, "render") &&
            bench_draw(&r, options.spp ? options.spp : SPP, NULL, &stats);

@@ -75,7 +75,37 @@ static bool add_camera(kiln_scene *scene, kiln_report *report) {
     return kiln_scene_add_camera(scene, &camera, NULL, report);
 }
 
-bool bench_make_scene(uint64_t triangles, uint32_t copies, kiln_scene **scene, kiln_report *report) {
+/* Squares over a disk as wide as the table (a spiral of golden angles), that shine down and a little outwards. */
+static bool add_lamps(kiln_scene *scene, uint32_t lamps, double half, kiln_report *report) {
+    const double height = 1.5, size = 0.5 * half / sqrt((double)lamps), radiance = 10 / (0.25 * half * half);
+    float *positions = array_alloc(lamps, 12 * sizeof *positions);
+    uint32_t *corners = array_alloc(lamps, 6 * sizeof *corners);
+    for (size_t i = 0; positions && corners && i < lamps; i++) {
+        double r = half * sqrt(((double)i + 0.5) / lamps), angle = 2.39996322972865332 * (double)i;
+        double c = cos(angle), s = sin(angle);
+        for (uint32_t k = 0; k < 4; k++) {
+            double x = (k == 0 || k == 3 ? -0.5 : 0.5) * size, z = (k < 2 ? -0.5 : 0.5) * size;
+            float *p = positions + 12 * i + (size_t)3 * k;
+            p[0] = (float)(c * (r + x) - s * z), p[1] = (float)(height + 0.3 * x), p[2] = (float)(s * (r + x) + c * z);
+        }
+        const uint32_t first = (uint32_t)(4 * i), two[6] = {first, first + 1, first + 2, first, first + 2, first + 3};
+        memcpy(corners + 6 * i, two, sizeof two);
+    }
+    kiln_material lamp = kiln_material_default();
+    kiln_id mesh, material;
+    for (int k = 0; k < 3; k++) lamp.emission.value[k] = (float)radiance;
+    bool done = (positions && corners) || report_no_memory(report, "making a scene");
+    done = done && kiln_scene_add_material(scene, &lamp, &material, report);
+    kiln_mesh_desc desc = {.name = "lamps", .vertex_count = 4 * lamps, .positions = positions, .face_count = 2 * lamps,
+                           .face_vertices = corners, .material = done ? material : 0};
+    done = done && kiln_scene_add_mesh(scene, &desc, &mesh, report) &&
+           kiln_scene_add_instance(scene, &(kiln_instance_desc){.name = "lamps", .mesh = mesh}, NULL, report);
+    free(positions);
+    free(corners);
+    return done;
+}
+
+bool bench_make_scene(uint64_t triangles, uint32_t copies, uint32_t lamps, kiln_scene **scene, kiln_report *report) {
     kiln_material paint = kiln_material_default();
     const float color[3] = {0.8f, 0.45f, 0.25f};
     kiln_id material, mesh;
@@ -87,7 +117,8 @@ bool bench_make_scene(uint64_t triangles, uint32_t copies, kiln_scene **scene, k
     if (!*scene) return report_no_memory(report, "making a scene");
     if (kiln_scene_add_material(*scene, &paint, &material, report) &&
         add_ring(*scene, triangles, material, &mesh, report) && add_table(*scene, 1.5 * side + 0.5, report) &&
-        add_copies(*scene, mesh, copies, side, report) && add_camera(*scene, report))
+        add_copies(*scene, mesh, copies, side, report) && add_camera(*scene, report) &&
+        (!lamps || add_lamps(*scene, lamps, 1.5 * side + 0.5, report)))
         return true;
     kiln_scene_destroy(*scene);
     *scene = NULL;

@@ -8,7 +8,7 @@ static const option_choice estimators[] = {
 static const option_choice samplers[] = {
     {"sobol", KILN_SAMPLER_SOBOL}, {"independent", KILN_SAMPLER_INDEPENDENT}, {NULL, 0}};
 static const option_choice light_samplings[] = {
-    {"power", KILN_LIGHTS_POWER}, {"uniform", KILN_LIGHTS_UNIFORM}, {NULL, 0}};
+    {"tree", KILN_LIGHTS_TREE}, {"power", KILN_LIGHTS_POWER}, {"uniform", KILN_LIGHTS_UNIFORM}, {NULL, 0}};
 static const option_choice texture_filters[] = {
     {"bilinear", KILN_TEXTURES_BILINEAR}, {"mip", KILN_TEXTURES_MIP}, {NULL, 0}};
 static const option_choice schemes[] = {{"auto", KILN_SCHEME_AUTO},
@@ -72,7 +72,7 @@ static const option_row rows[] = {
      FIELD(roulette)},
     {"sampler", 0, "NAME", estimator, "sobol (Owen-scrambled) or independent", "sobol", NULL, "a sampler",
      &option_choices, samplers, FIELD(sampler)},
-    {"light-sampling", 0, "NAME", estimator, "how a light is chosen: power or uniform", "power", NULL,
+    {"light-sampling", 0, "NAME", estimator, "how a light is chosen: tree, power or uniform", "tree", NULL,
      "a way of choosing lights", &option_choices, light_samplings, FIELD(light_sampling)},
     {"texture-filter", 0, "NAME", estimator,
      "textures seen small: bilinear, always from the picture, or mip, from pyramids by the footprint of the path",
@@ -149,7 +149,7 @@ static const option_row rows[] = {
     {"embree", 0, NULL, measure, "replays the rays of the render through Embree and nothing else", NULL, NULL,
      "true or false", &option_toggle, FIELD(embree), .also = JOB_BENCH, .except = JOB_RENDER},
     {"growth", 0, "LIST", measure,
-     "how time and memory grow with pixels, triangles, instances, depth, threads, or all; 'triangles:1e6' ends there",
+     "how time and memory grow with pixels, triangles, instances, lights, depth, threads, or all; 'triangles:1e6' ends there",
      NULL, NULL, "a list", &option_text, FIELD(growth), .also = JOB_BENCH, .except = JOB_RENDER},
 
     {"metric", 0, "NAME", compare,

@@ -51,9 +51,11 @@ bool context_make(const kiln_renderer *r, const kiln_render_options *o, const ki
     if (!check_options(o, report)) return false;
     if (!view)
         return report_error(report, KILN_CODE_USAGE, NULL, "give a camera", "the scene has no camera");
-    light_choice choice = o->estimator == KILN_ESTIMATOR_BSDF          ? CHOOSE_POINTS
+    bool by_place = o->estimator != KILN_ESTIMATOR_BSDF && o->light_sampling == KILN_LIGHTS_TREE && lights->tree;
+    light_choice choice = o->estimator == KILN_ESTIMATOR_BSDF        ? CHOOSE_POINTS
                           : o->light_sampling == KILN_LIGHTS_UNIFORM ? CHOOSE_UNIFORMLY
-                                                                       : CHOOSE_BY_POWER;
+                          : by_place                                 ? CHOOSE_FAR
+                                                                     : CHOOSE_BY_POWER;
     kiln_effect_plan plan = r->world->plan;
     scan_camera(r->scene, view, &plan);
     *c = (path_context){.world = r->world,
@@ -66,7 +68,9 @@ bool context_make(const kiln_renderer *r, const kiln_render_options *o, const ki
                         .roulette = o->roulette.kind,
                         .roulette_p = (float)o->roulette.p,
                         .roulette_min = o->roulette.min_depth,
-                        .samples_lights = lights->any[choice],
+                        .samples_lights = by_place || lights->any[choice],
+                        .keeps_place = by_place || (o->estimator == KILN_ESTIMATOR_MIS && HAS(plan.runs, AREA_LIGHTS)),
+                        .light_tree = by_place ? lights->tree : NULL,
                         .light_cdf = lights->cdf[choice],
                         .light_guide = lights->guide[choice],
                         .max_depth = o->max_depth == KILN_DEPTH_ZERO ? 0 : o->max_depth ? o->max_depth : 64,

@@ -81,8 +81,9 @@ extern "C" {
       "light: cones; escape: the disk is seen", "", "LIGHT")                                                           \
     X(ENVIRONMENT, "environment", 0, FREE, GOES, "surroundings that are not black everywhere",                         \
       "escape; light: directions", "", "LIGHT")                                                                        \
-    X(MANY_LIGHTS, "many-lights", 0, HELD, STAYS, "more than one triangle or light to choose from",                    \
-      "light: the choice", "", "LIGHT, LIGHT_FINE")
+    X(MANY_LIGHTS, "many-lights", 0, HELD, GOES, "more than one triangle or light to choose from",                     \
+      "light: the choice, by a tree; emission, escape: the choice that a ray's finds would have been", "",             \
+      "LIGHT, LIGHT_FINE")
 
 typedef enum kiln_effect {
 #define KILN_EFFECT_ENUM(id, name, terms, held, stays, called, stages, embree, samples) KILN_EFFECT_##id,

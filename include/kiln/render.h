@@ -91,6 +91,8 @@ typedef enum kiln_sampler { KILN_SAMPLER_SOBOL, KILN_SAMPLER_INDEPENDENT } kiln_
 
 /* Which light is sampled at a bounce: a triangle that emits, a punctual light, or the environment. */
 typedef enum kiln_light_sampling {
+    KILN_LIGHTS_TREE,   /* by what each may do for the point that is lit: where it is, how bright, which way it faces; in
+                           scenes of several */
     KILN_LIGHTS_POWER,  /* half of the choices by power; half alike among groups (the triangles of a material, a punctual
                            light, the environment) and by power within one: a small lamp is not starved by a sun */
     KILN_LIGHTS_UNIFORM /* all that emit alike: each triangle is one light */

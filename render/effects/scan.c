@@ -4,7 +4,8 @@
 #include <string.h>
 
 #include "render/effects/reduce.h"
-#include "render/light/table.h"
+#include "render/light/parallelogram.h"
+#include "render/light/tree.h"
 #include "render/world/media.h"
 #include "render/world/slots.h"
 #include "render/world/spectrum.h"
@@ -160,13 +161,40 @@ static uint64_t lamps_of(const reduced_scene *r, const kiln_mesh *m) {
     return count;
 }
 
+static void load_corners(const kiln_mesh *m, uint32_t first, int turn, vec3 p[3]) {
+    for (int k = 0; k < 3; k++) p[k] = v3_load(m->positions + 3 * (size_t)m->face_vertices[first + (uint32_t)(turn + k) % 4]);
+}
+
+/* Are a mesh's first two triangles that shine halves of one lamp, as render/world/lights.c will find? */
+static bool is_one_lamp(const reduced_scene *r, const world_image *images, kiln_texture_filter filter, const kiln_mesh *m) {
+    uint32_t face = 0;
+    while (!material_emits(&r->materials[mesh_face_material(m, face)])) face++;
+    const kiln_material *lamp = &r->materials[mesh_face_material(m, face)];
+    bool quad = m->face_offsets && mesh_face_size(m, face) == 4;
+    uint32_t first = m->face_offsets ? m->face_offsets[face] : 3 * face;
+    int apex;
+    float off;
+    vec3 a[3], b[3];
+    if (HAS(material_effects(lamp, images) | slots_effects(lamp, images, filter), TEXTURED_LIGHTS)) return false;
+    if (!quad && (m->face_offsets || mesh_face_material(m, face + 1) != mesh_face_material(m, face))) return false;
+    load_corners(m, first, 0, a);
+    if (quad) load_corners(m, first, 2, b);
+    else load_corners(m, first + 3, 0, b);
+    return parallelogram_make(a, b, &apex, &off);
+}
+
 /* One light of any sort needs no choice; others: lights that are no triangles. */
-static void scan_choice(const reduced_scene *r, uint64_t others, kiln_effect_plan *plan) {
+static void scan_choice(const reduced_scene *r, const world_image *images, kiln_texture_filter filter, uint64_t others,
+                        kiln_effect_plan *plan) {
     uint64_t count = others;
     bool lamps = plan->uses[KILN_EFFECT_AREA_LIGHTS].called;
     for (uint32_t i = 0; lamps && count < 2 && i < r->scene->mesh_count; i++)
-        if (r->shown[i]) count += r->shown[i] * lamps_of(r, &r->scene->meshes[i]);
-    if (count < 2) return;
+        if (r->shown[i]) {
+            const kiln_mesh *m = &r->scene->meshes[i];
+            uint64_t triangles = lamps_of(r, m);
+            count += r->shown[i] * (triangles == 2 && is_one_lamp(r, images, filter, m) ? 1 : triangles);
+        }
+    if (count < 2 || HAS(r->removed, MANY_LIGHTS)) return;
     for (int e = 0; e < KILN_EFFECT_COUNT; e++) {
         const uint64_t shining = EFFECT(AREA_LIGHTS) | EFFECT(PUNCTUAL_LIGHTS) | EFFECT(SUNS) | EFFECT(ENVIRONMENT);
         const kiln_effect_use *use = &plan->uses[e];
@@ -186,7 +214,7 @@ static bool scan_solids(const reduced_scene *r, kiln_effect_plan *plan, kiln_rep
 
 /* Memory that is held for effects: of images as they will be kept, of each mesh once. */
 static void measure(const reduced_scene *r, const world_image *images, kiln_effect_plan *plan) {
-    enum { PYRAMID_SHARE = 3, TANGENT_BYTES = 16, COLOR_BYTES = 16 };
+    enum { PYRAMID_SHARE = 3, TANGENT_BYTES = 16, COLOR_BYTES = 16, NODE_LIGHTS = 3 }; /* as trees are on the average */
     uint64_t vertices = 0, lamps = 0, bytes[KILN_EFFECT_COUNT] = {0};
     for (uint32_t i = 0; i < r->scene->mesh_count; i++) {
         if (!r->shown[i]) continue;
@@ -204,6 +232,7 @@ static void measure(const reduced_scene *r, const world_image *images, kiln_effe
         TANGENT_BYTES * vertices;
     bytes[KILN_EFFECT_VERTEX_COLORS] = COLOR_BYTES * vertices;
     bytes[KILN_EFFECT_AREA_LIGHTS] = lamps * sizeof(light);
+    bytes[KILN_EFFECT_MANY_LIGHTS] = lamps * (sizeof(light_node) / NODE_LIGHTS + sizeof(uint64_t));
     bytes[KILN_EFFECT_DISPERSION] = SPECTRUM_FLOATS * sizeof(float);
     for (int e = 0; e < KILN_EFFECT_COUNT; e++) plan->uses[e].bytes = plan->uses[e].called ? bytes[e] : 0;
 }
@@ -213,7 +242,7 @@ bool scan_scene(const reduced_scene *r, const world_image *images, kiln_texture_
     memset(plan->uses, 0, sizeof plan->uses);
     scan_materials(r, images, filter, plan);
     scan_meshes(r, plan);
-    scan_choice(r, scan_lights(r, images, plan), plan);
+    scan_choice(r, images, filter, scan_lights(r, images, plan), plan);
     bool done = scan_solids(r, plan, report);
     measure(r, images, plan);
     plan_settle(plan);

@@ -18,6 +18,7 @@ typedef struct light {
     vec3 radiance; /* TRIANGLE: before the texture; POINT, SPOT: intensity; DISTANT: radiance of its disk, or its
                       illuminance when it is parallel */
     float area;    /* TRIANGLE */
+    float quad;      /* TRIANGLE: 1: it is a parallelogram, of twice the triangle's area */
     float two_sided; /* TRIANGLE: 1: the back emits too */
     float spot_scale, spot_offset; /* smooth edge: clamp(cos · scale + offset)² */
     float one_minus_cos;  /* DISTANT: of the half angle; 0: parallel */
@@ -39,16 +40,18 @@ typedef struct environment {
     uint32_t light;       /* its index among the lights */
 } environment;
 
-/* How a light is chosen: by kiln_light_sampling, or only what no ray can hit. */
-typedef enum light_choice { CHOOSE_BY_POWER, CHOOSE_UNIFORMLY, CHOOSE_POINTS, LIGHT_CHOICES } light_choice;
+/* Distributions to choose a light by: by power, all alike; only what no ray can hit; only those without a place. */
+typedef enum light_choice { CHOOSE_BY_POWER, CHOOSE_UNIFORMLY, CHOOSE_POINTS, CHOOSE_FAR, LIGHT_CHOICES } light_choice;
 
 typedef struct light_table {
     light *lights;
-    uint32_t count;
+    uint32_t count, near_count; /* those that have a place come first */
     uint32_t kinds;        /* bits of light_kind that occur */
     bool bounds;           /* some triangle bounds a solid, and may be hidden */
-    uint32_t *cdf[LIGHT_CHOICES], *guide[LIGHT_CHOICES]; /* NULL: there is nothing to choose */
+    uint32_t *cdf[LIGHT_CHOICES], *guide[LIGHT_CHOICES]; /* NULL: there is nothing to choose; FAR: behind near_count */
     bool any[LIGHT_CHOICES]; /* something has a chance; without a cdf it is light 0, the only one */
+    struct light_tree *tree; /* over those that have a place; NULL: nothing to choose, or nobody wants it */
+    float far;             /* irradiance by the others, in units of the tree's intensities */
     uint32_t *distant;     /* the DISTANT ones with an angle: seen by rays that leave the scene */
     uint32_t distant_count;
     environment environment;

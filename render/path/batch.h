@@ -39,6 +39,11 @@ enum {
 /* The cone of the path (cone.h): in scenes that filter textures, moved too. */
 #define PATH_CONE(X) X(float, width) X(float, spread)
 
+/* Where the path was last lit, in scenes with area lights; the rest of a vantage (render/light/tree.h), where lights are
+ * chosen by where they are. */
+#define PATH_PLACE(X) X(float, from_x) X(float, from_y) X(float, from_z)
+#define PATH_VANTAGE(X) X(float, up_x) X(float, up_y) X(float, up_z) X(float, far_share)
+
 /* The same, where there are solids: how many steps were no bounces off a surface: events in media that scatter, and
  * boundaries that are hidden in another medium. */
 #define PATH_EVENTS(X) X(uint32_t, events)
@@ -54,6 +59,7 @@ enum {
 #define LANE_ARRAY(type, name) _Alignas(64) type name[LANES];
 typedef struct path_state {
     PATH_STATE(LANE_ARRAY) PATH_MEDIA(LANE_ARRAY) PATH_CONE(LANE_ARRAY) PATH_EVENTS(LANE_ARRAY)
+    PATH_PLACE(LANE_ARRAY) PATH_VANTAGE(LANE_ARRAY)
 } path_state;
 typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit;
 
@@ -132,7 +138,7 @@ typedef struct path_hit { PATH_HIT(LANE_ARRAY) PATH_TOUCH(LANE_ARRAY) } path_hit
     X(float, e2x) X(float, e2y) X(float, e2z) X(float, ax) X(float, ay) X(float, az)                                   \
     X(float, rr) X(float, rg) X(float, rb)       /* radiance */                                                        \
     X(float, light_area) X(float, light_error) X(float, spot_scale) X(float, spot_offset)                              \
-    X(float, one_minus_cos) X(float, two_sided) X(float, probability)                                                  \
+    X(float, one_minus_cos) X(float, two_sided) X(float, quad) X(float, probability)                                                  \
     X(uint32_t, light) X(uint32_t, light_kind)                                                                         \
     X(uint32_t, row) X(uint32_t, column) X(float, across_texel) X(float, down_texel) /* environment_choice */
 

@@ -23,6 +23,8 @@ typedef struct path_context {
     int independent;        /* sampler */
     kiln_estimator estimator;
     bool samples_lights;
+    bool keeps_place; /* paths know where they were last lit */
+    const struct light_tree *light_tree; /* NULL: lights are not chosen by where they are; else CHOOSE_FAR's … */
     const uint32_t *light_cdf, *light_guide; /* NULL: there is none, or one alone */
     uint32_t max_depth;
     kiln_roulette_kind roulette;
@@ -44,12 +46,6 @@ typedef struct path_sample {
 /* The wavelength that a path of a world with a spectrum takes on: of the sample, whenever that is. */
 static inline spectrum_line path_wavelength(const path_context *c, sample_point p) {
     return spectrum_draw(c->world->spectrum, sample_pair(c->independent, p, SAMPLE_WAVELENGTH, 0).x);
-}
-
-/* With which a light of the table is chosen. */
-static inline float path_light_probability(const path_context *c, uint32_t which) {
-    if (c->light_cdf) return distribution_probability(c->light_cdf, which);
-    return c->samples_lights ? 1.0f : 0.0f;
 }
 
 /* Traces count ≤ BATCH_PATHS samples to their end; b->out then holds their results by position in samples. Each sixteen

@@ -1,4 +1,5 @@
 #include "render/light/light.h"
+#include "render/path/choice.h"
 #include "render/path/estimate.h"
 #include "render/path/stages.h"
 
@@ -20,7 +21,8 @@ static void add_suns(const path_context *c, batch *b, uint32_t i) {
         const light *l = &t->lights[t->distant[k]];
         vec3 off = v3_add(d, l->axis); /* 1 − cos = |d − toward|²/2: exact for small disks */
         if (0.5f * v3_dot(off, off) > l->one_minus_cos) continue;
-        float probability = path_light_probability(c, t->distant[k]);
+        vantage from = path_vantage(c, s, i);
+        float probability = path_light_probability(c, t->distant[k], &from);
         float light_pdf = probability * light_distant_pdf(l->one_minus_cos);
         add(s, i, v3_scale(l->radiance, estimate_hit_weight(c->estimator, s->pdf[i], light_pdf)));
         if (c->parts) STAGE(part_found)(c, b, i, c->parts->of_light[l->owner]);
@@ -37,9 +39,10 @@ static void add_environment(const path_context *c, batch *b, uint32_t count) {
         x->tu[k] = place.x;
         x->tv[k] = place.y;
     }
-    float probability = path_light_probability(c, e->light);
     for (uint32_t k = 0; k < count; k++) {
         uint32_t i = x->list[k], ahead = k + AHEAD_TEXELS;
+        vantage from = path_vantage(c, s, i);
+        float probability = path_light_probability(c, e->light, &from);
         if (ahead < count) environment_prefetch_place(e, (vec2){x->tu[ahead], x->tv[ahead]});
         environment_value v = environment_look_up(e, (vec2){x->tu[k], x->tv[k]});
         float weight = estimate_hit_weight(c->estimator, s->pdf[i], probability * v.pdf);

@@ -3,23 +3,6 @@
 #include "render/path/stages.h"
 #include "render/world/lookup.h"
 
-/* Which light, and its record. The choice takes its share of the place's first number and leaves the rest, so that lights
- * that lie side by side in the table, as the triangles of a lamp do, are sampled as one stratified area. */
-static void choose(const path_context *c, batch *b) {
-    const light_table *t = &c->world->lights;
-    path_scratch *x = &b->scratch;
-    for (uint32_t i = 0; i < b->n; i++) {
-        float rest = x->u_light_x[i];
-        uint32_t k = 0;
-        if (c->light_cdf) k = distribution_pick(c->light_cdf, c->light_guide, t->count, rest, x->u_fine[i], &rest);
-        const light *l = &t->lights[k];
-        x->u_light_x[i] = rest;
-        x->probability[i] = path_light_probability(c, k);
-        x->light[i] = k;
-        x->light_kind[i] = (uint32_t)l->kind;
-    }
-}
-
 static void load_records(const path_context *c, batch *b) {
     path_scratch *x = &b->scratch;
     for (uint32_t i = 0; i < b->n; i++) {
@@ -32,6 +15,7 @@ static void load_records(const path_context *c, batch *b) {
         x->light_area[i] = l->area, x->light_error[i] = l->error;
         x->spot_scale[i] = l->spot_scale, x->spot_offset[i] = l->spot_offset;
         x->one_minus_cos[i] = l->one_minus_cos, x->two_sided[i] = l->two_sided;
+        x->quad[i] = l->quad;
     }
 }
 
@@ -49,7 +33,8 @@ KERNEL void sample(unsigned kinds, batch *b) {
                    .spot_scale = x->spot_scale[i],
                    .spot_offset = x->spot_offset[i],
                    .one_minus_cos = x->one_minus_cos[i],
-                   .two_sided = x->two_sided[i]};
+                   .two_sided = x->two_sided[i],
+                   .quad = x->quad[i]};
         vec3 p = {x->above_x[i], x->above_y[i], x->above_z[i]};
         light_sampled r = light_sample(kinds, &l, p, (vec2){x->u_light_x[i], x->u_light_y[i]});
         x->wx[i] = r.wi.x, x->wy[i] = r.wi.y, x->wz[i] = r.wi.z;
@@ -68,7 +53,7 @@ static void vary_emission(const world *w, batch *b) {
         const light *l = &w->lights.lights[x->light[i]];
         if (!l->varies) continue;
         float cosine = -v3_dot(v3(x->wx[i], x->wy[i], x->wz[i]), l->axis);
-        vec2 at = warp_triangle((vec2){x->u_light_x[i], x->u_light_y[i]});
+        vec2 at = light_triangle_place(l, v3(x->tx[i], x->ty[i], x->tz[i]));
         vec3 e = lookup_emission(w, l->varies - 1, at, cosine);
         x->cr[i] *= e.x, x->cg[i] *= e.y, x->cb[i] *= e.z;
     }
@@ -91,7 +76,7 @@ static void hide_emission(const world *w, batch *b) {
 
 void STAGE(light)(const path_context *c, batch *b) {
     const light_table *t = &c->world->lights;
-    choose(c, b);
+    STAGE(choose)(c, b);
     if (t->kinds != KIND(LIGHT_ENVIRONMENT)) load_records(c, b);
     if (t->environment.present) STAGE(surroundings)(c, b);
     if (t->kinds == KIND(LIGHT_TRIANGLE)) sample(KIND(LIGHT_TRIANGLE), b);

@@ -12,7 +12,7 @@ void STAGE(random)(const path_context *c, batch *b) {
             x->u_light_x[i] = place.x, x->u_light_y[i] = place.y;
         }
     }
-    if (c->samples_lights && (HAS(c->effects, MANY_LIGHTS) || HAS(c->effects, ENVIRONMENT))) {
+    if (c->samples_lights && (c->light_tree || c->light_cdf || HAS(c->effects, ENVIRONMENT))) {
         LANE_LOOP (uint32_t i = 0; i < b->n; i++) {
             sample_point p = {s->index[i], s->seed[i]};
             x->u_fine[i] = sample_pair(independent, p, SAMPLE_LIGHT_FINE, depth).x;

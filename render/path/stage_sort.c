@@ -14,7 +14,8 @@ static uint32_t in_place(const uint32_t *order, uint32_t count) {
 
 /* Moves the lanes that order names, with their hits: within the arrays where order is ascending, for then no lane is
  * overwritten before it is read, and the first may stay where they are; else to the other half of the batch. */
-static void move(uint64_t effects, batch *b, uint32_t count, bool ascending, bool with_hits) {
+static void move(const path_context *c, batch *b, uint32_t count, bool ascending, bool with_hits) {
+    const uint64_t effects = c->effects;
     uint32_t half = ascending ? b->current : 1 - b->current;
     const path_state *from = &b->states[b->current];
     path_state *to = &b->states[half];
@@ -33,6 +34,12 @@ static void move(uint64_t effects, batch *b, uint32_t count, bool ascending, boo
     }
     if (HAS(effects, TEXTURE_FILTERING)) {
         PATH_CONE(MOVE_STATE)
+    }
+    if (c->keeps_place) {
+        PATH_PLACE(MOVE_STATE)
+    }
+    if (c->light_tree) {
+        PATH_VANTAGE(MOVE_STATE)
     }
     if (with_hits) {
         PATH_HIT(MOVE_HIT)
@@ -109,7 +116,7 @@ void STAGE(sort)(const path_context *c, batch *b) {
     bool alike = !(w->kinds & (w->kinds - 1));
     count = alike ? list_of_kind((material_kind)__builtin_ctz(w->kinds | 1u << KIND_COUNT), b) : list_by_kind(w, b);
     b->surfaces = b->kinds[KIND_MEDIUM].first;
-    move(c->effects, b, count, alike, true);
+    move(c, b, count, alike, true);
 }
 
 void STAGE(close)(const path_context *c, batch *b) {
@@ -122,5 +129,5 @@ void STAGE(close)(const path_context *c, batch *b) {
         dead += !goes_on;
     }
     end(b, ended, dead);
-    move(c->effects, b, fill_group(order, alive), true, false);
+    move(c, b, fill_group(order, alive), true, false);
 }

@@ -57,6 +57,7 @@ bool STAGE(limit)(const path_context *, batch *);
 void STAGE(random)(const path_context *, batch *);
 /* A light for each path, and a point on it. */
 void STAGE(light)(const path_context *, batch *);
+void STAGE(choose)(const path_context *, batch *);
 void STAGE(surroundings)(const path_context *, batch *);
 /* What the light sample contributes, if nothing lies between. */
 void STAGE(connect)(const path_context *, batch *);

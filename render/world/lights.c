@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "base/threads.h"
+#include "render/light/parallelogram.h"
+#include "render/light/tree.h"
 #include "render/world/environment.h"
 #include "render/world/lookup.h"
 #include "scene/transfer.h"
@@ -25,11 +27,35 @@ static bool triangle_emits(const world *w, uint32_t triangle) {
     return lit && !(m->flags & MATERIAL_UNLIT);
 }
 
-/* Numbers the emitting triangles of [first, first + count); returns how many there are. */
+static void load_triangle(const world *w, const world_instance *copy, uint32_t triangle, vec3 p[3]) {
+    const uint32_t *v = w->triangles + 3 * (size_t)triangle;
+    for (int k = 0; k < 3; k++) p[k] = world_instance_point(copy, v3_load(w->vertices[v[k]].p));
+}
+
+/* Do a triangle and the next one make a parallelogram that shines evenly? Judged before it is placed: a copy of a
+ * parallelogram is one. */
+static bool makes_pair(const world *w, uint32_t triangle, int *apex, float *off) {
+    bool alike = w->triangle_material[triangle] == w->triangle_material[triangle + 1];
+    const world_material *m = &w->materials[w->triangle_material[triangle]];
+    bool whole = m->opacity >= 1.0f && !m->texture[SLOT_OPACITY] && !w->colors;
+    bool covers = whole || !(m->flags & (MATERIAL_MASK | MATERIAL_BLEND));
+    vec3 a[3], b[3];
+    if (!alike || !covers || m->texture[SLOT_EMISSION] || m->clearcoat > 0.0f) return false;
+    load_triangle(w, &w->instances[0], triangle, a);
+    load_triangle(w, &w->instances[0], triangle + 1, b);
+    return parallelogram_make(a, b, apex, off);
+}
+
+/* Numbers the emitters of [first, first + count): triangles, of pairs both alike; returns how many there are. */
 static uint32_t number_emitters(world *w, uint32_t first, uint32_t count, uint32_t number) {
     uint32_t before = number;
-    for (uint32_t t = first; t < first + count; t++)
+    int apex;
+    float off;
+    for (uint32_t t = first; t < first + count; t++) {
         w->triangle_light[t] = triangle_emits(w, t) ? number++ : LIGHT_NONE;
+        bool pair = w->triangle_light[t] != LIGHT_NONE && t + 1 < first + count && makes_pair(w, t, &apex, &off);
+        if (pair) w->triangle_light[t + 1] = w->triangle_light[t], t++;
+    }
     return number - before;
 }
 
@@ -88,27 +114,28 @@ static float mean_emission(const world *w, const light *l) {
     return points > 0 ? sum / points : 0.0f;
 }
 
-static light triangle_light(const world *w, const world_instance *copy, uint32_t triangle) {
-    const uint32_t *v = w->triangles + 3 * (size_t)triangle;
+static light triangle_light(const world *w, const world_instance *copy, uint32_t triangle, bool pair) {
     const world_material *m = &w->materials[w->triangle_material[triangle]];
     vec3 p[3];
-    float reach = copy->magnitude;
+    int apex = 0;
+    float reach = copy->magnitude, off;
     light l = {.kind = LIGHT_TRIANGLE, .radiance = v3_load(m->emission),
-               .owner = w->triangle_material[triangle], .varies = lookup_emission_varies(w, triangle) ? triangle + 1 : 0,
+               .owner = w->triangle_material[triangle], .varies = !pair && lookup_emission_varies(w, triangle) ? triangle + 1 : 0,
                .medium = m->medium,
                .two_sided = m->flags & MATERIAL_TWO_SIDED ? 1.0f : 0.0f};
-    for (int k = 0; k < 3; k++) {
-        p[k] = world_instance_point(copy, v3_load(w->vertices[v[k]].p));
-        reach = fmaxf(reach, v3_max(v3_abs(p[k])));
-    }
-    l.position = p[0];
-    l.e1 = v3_sub(p[1], p[0]);
-    l.e2 = v3_sub(p[2], p[0]);
+    load_triangle(w, copy, triangle, p);
+    for (int k = 0; k < 3; k++) reach = fmaxf(reach, v3_max(v3_abs(p[k])));
+    if (pair) (void)makes_pair(w, triangle, &apex, &off);
+    l.quad = pair ? 1.0f : 0.0f;
+    l.position = p[apex];
+    l.e1 = v3_sub(p[(apex + 1) % 3], l.position);
+    l.e2 = v3_sub(p[(apex + 2) % 3], l.position);
     vec3 n = v3_scale(v3_cross(l.e1, l.e2), copy->side);
     float twice = v3_length(n);
-    l.area = 0.5f * twice;
+    l.area = pair ? twice : 0.5f * twice;
     if (twice > 0) l.axis = v3_scale(n, 1.0f / twice);
     l.error = reach * 0x1p-20f; /* a dozen roundings of 2⁻²⁴ */
+    if (pair) l.error += 0x1p-18f * (v3_length(l.e1) + v3_length(l.e2)); /* parallelogram_make's */
     return l;
 }
 
@@ -117,12 +144,15 @@ static void add_triangles(build *b) {
     for (uint32_t i = 0; i < w->instance_count; i++) {
         const world_instance *copy = &w->instances[i];
         const world_prototype *p = i ? &w->prototypes[copy->prototype] : &w->baked;
-        for (uint32_t t = p->first[0]; t < p->first[0] + p->count[0] + p->count[1]; t++)
-            if (w->triangle_light[t] != LIGHT_NONE) {
-                uint32_t number = copy->light_base + w->triangle_light[t];
-                w->lights.lights[number] = triangle_light(w, copy, t);
-                b->group[number] = w->triangle_material[t];
-            }
+        uint32_t end = p->first[0] + p->count[0] + p->count[1];
+        for (uint32_t t = p->first[0]; t < end; t++) {
+            uint32_t number = w->triangle_light[t];
+            if (number == LIGHT_NONE) continue;
+            bool pair = t + 1 < end && w->triangle_light[t + 1] == number;
+            w->lights.lights[copy->light_base + number] = triangle_light(w, copy, t, pair);
+            b->group[copy->light_base + number] = w->triangle_material[t];
+            t += pair;
+        }
     }
 }
 
@@ -184,55 +214,102 @@ static void measure_power(void *context, size_t chunk, uint32_t thread) {
     }
 }
 
-/* A way of choosing among lights, unless nothing has a chance, or there is one alone. */
-static bool add_choice(build *b, light_choice choice, const float *weights) {
+/* A way of choosing among so many lights, unless nothing has a chance, or there is one alone. */
+static bool add_choice(build *b, light_choice choice, const float *weights, uint32_t count) {
     light_table *t = &b->world->lights;
-    for (uint32_t i = 0; i < t->count; i++) t->any[choice] |= weights[i] > 0;
+    for (uint32_t i = 0; i < count; i++) t->any[choice] |= weights[i] > 0;
     if (!t->any[choice] || (t->count == 1 && !HOLDS(b->world, MANY_LIGHTS))) return true;
-    t->cdf[choice] = ARENA_ARRAY(&b->world->arena, uint32_t, (size_t)t->count + 1);
-    t->guide[choice] = ARENA_ARRAY(&b->world->arena, uint32_t, t->count);
+    t->cdf[choice] = ARENA_ARRAY(&b->world->arena, uint32_t, (size_t)count + 1);
+    t->guide[choice] = ARENA_ARRAY(&b->world->arena, uint32_t, count);
     if (!t->cdf[choice] || !t->guide[choice]) return false;
-    distribution_build(weights, t->count, t->cdf[choice], t->guide[choice]);
+    distribution_build(weights, count, t->cdf[choice], t->guide[choice]);
     return true;
+}
+
+/* Of a light that has a place: along its normals, times distance², what a surface that faces it receives; of others that
+ * irradiance itself, of surroundings a mean over the ways that a surface may face. */
+static float light_intensity(const build *b, uint32_t i) {
+    const light *l = &b->world->lights.lights[i];
+    const float pi = 3.14159265f, disk = pi * b->world->radius * b->world->radius;
+    switch (l->kind) {
+    case LIGHT_TRIANGLE: return b->power[i] / (pi * (1.0f + l->two_sided));
+    case LIGHT_POINT:
+    case LIGHT_SPOT: return b->power[i] > 0 ? (l->radiance.x + l->radiance.y + l->radiance.z) / 3.0f : 0.0f;
+    case LIGHT_DISTANT: return disk > 0 ? b->power[i] / disk : 0.0f;
+    case LIGHT_ENVIRONMENT: return 0.25f * b->world->lights.environment.total;
+    case LIGHT_KINDS: break;
+    }
+    return 0;
+}
+
+/* Two triangles of one material: nearly always the halves of a lamp. */
+static bool is_one_lamp(const build *b) {
+    const light_table *t = &b->world->lights;
+    return t->near_count == 2 && b->group[0] == b->group[1];
+}
+
+/* Over the lights that have a place, where a place tells them apart. */
+static bool add_tree(build *b, float *intensity) {
+    world *w = b->world;
+    light_table *t = &w->lights;
+    double near = 0, far = 0;
+    if (!HOLDS(w, MANY_LIGHTS) || is_one_lamp(b)) return true;
+    for (uint32_t i = 0; i < t->count; i++) {
+        intensity[i] = light_intensity(b, i);
+        *(i < t->near_count ? &near : &far) += (double)intensity[i];
+    }
+    if (!(near > 0)) return true;
+    t->far = far > 0 ? fmaxf((float)(far / near), 0x1p-100f) : 0;
+    t->tree = light_tree_build(&w->arena, t->lights, intensity, t->near_count);
+    return t->tree != NULL;
 }
 
 /* Half by power; half alike among groups, by power within each. Power alone would starve a small lamp beside what it
  * lights when a strong one shines from afar (Veach's plates: 4 times the error). */
-static void blend_by_group(build *b, float *weights) {
+static void blend_by_group(const build *b, uint32_t first, float *weights) {
     uint32_t count = b->world->lights.count, lit = 0;
     double *sums = array_alloc(b->groups, sizeof *sums), total = 0;
     if (!sums) { /* power alone will do */
-        memcpy(weights, b->power, count * sizeof *weights);
+        memcpy(weights, b->power + first, (count - first) * sizeof *weights);
         return;
     }
-    for (uint32_t i = 0; i < count; i++) sums[b->group[i]] += (double)b->power[i];
+    for (uint32_t i = first; i < count; i++) sums[b->group[i]] += (double)b->power[i];
     for (uint32_t g = 0; g < b->groups; g++) total += sums[g], lit += sums[g] > 0;
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = first; i < count; i++) {
         double power = (double)b->power[i], group = sums[b->group[i]];
-        weights[i] = power > 0 ? (float)(power / total + power / (group * lit)) : 0.0f;
+        weights[i - first] = power > 0 ? (float)(power / total + power / (group * lit)) : 0.0f;
     }
     free(sums);
 }
 
-static bool build_choices(build *b) {
+static bool add_choices(build *b, float *weights) {
     light_table *t = &b->world->lights;
-    b->power = array_alloc(t->count, sizeof *b->power);
-    if (!b->power) return false;
-    threads_for(b->threads, (t->count + CHUNK - 1) / CHUNK, measure_power, b);
-    float *weights = array_alloc(t->count, sizeof *weights);
-    if (weights) blend_by_group(b, weights);
-    bool added = weights && add_choice(b, CHOOSE_BY_POWER, weights);
-    free(weights);
-    if (!added) return false;
-    for (uint32_t i = 0; i < t->count; i++) b->power[i] = b->power[i] > 0 ? 1.0f : 0.0f;
-    if (!add_choice(b, CHOOSE_UNIFORMLY, b->power)) return false;
+    blend_by_group(b, 0, weights);
+    if (!add_choice(b, CHOOSE_BY_POWER, weights, t->count)) return false;
+    blend_by_group(b, t->near_count, weights);
+    if (!add_choice(b, CHOOSE_FAR, weights, t->count - t->near_count) || !add_tree(b, weights)) return false;
+    for (uint32_t i = 0; i < t->count; i++) weights[i] = b->power[i] > 0 ? 1.0f : 0.0f;
+    if (!add_choice(b, CHOOSE_UNIFORMLY, weights, t->count)) return false;
     for (uint32_t i = 0; i < t->count; i++) {
         const light *l = &t->lights[i];
         bool hittable = l->kind == LIGHT_TRIANGLE || l->kind == LIGHT_ENVIRONMENT ||
                         (l->kind == LIGHT_DISTANT && l->one_minus_cos > 0);
-        if (hittable) b->power[i] = 0;
+        if (hittable) weights[i] = 0;
     }
-    return add_choice(b, CHOOSE_POINTS, b->power);
+    return add_choice(b, CHOOSE_POINTS, weights, t->count);
+}
+
+static bool build_choices(build *b) {
+    light_table *t = &b->world->lights;
+    float *weights = array_alloc(t->count, sizeof *weights);
+    b->power = array_alloc(t->count, sizeof *b->power);
+    bool added = weights && b->power;
+    if (added) {
+        threads_for(b->threads, (t->count + CHUNK - 1) / CHUNK, measure_power, b);
+        added = add_choices(b, weights);
+    }
+    free(weights);
+    return added;
 }
 
 /* Kinds of lights that kernels are to be ready for though the scene has none. */
@@ -242,6 +319,19 @@ static uint32_t imposed_kinds(uint64_t effects) {
     if (HAS(effects, SUNS)) kinds |= 1u << LIGHT_DISTANT;
     if (HAS(effects, ENVIRONMENT)) kinds |= 1u << LIGHT_ENVIRONMENT;
     return kinds;
+}
+
+static void add_punctual(build *b, bool distant) {
+    light_table *t = &b->world->lights;
+    for (uint32_t i = 0; i < b->scene->light_count; i++) {
+        const kiln_light *from = &b->scene->lights[i];
+        if ((from->kind == KILN_LIGHT_DISTANT) != distant || !(light_effects(from) & ~b->removed)) continue;
+        light l = punctual_light(b, from);
+        l.owner = i + 1;
+        if (distant && l.one_minus_cos > 0) t->distant[t->distant_count++] = t->count;
+        b->group[t->count] = b->groups++;
+        t->lights[t->count++] = l;
+    }
 }
 
 static bool add_all(build *b, uint64_t triangles) {
@@ -259,14 +349,9 @@ static bool add_all(build *b, uint64_t triangles) {
     if (!t->lights || !t->distant || !b->group) return report_no_memory(b->report, "building lights");
     if (triangles) add_triangles(b);
     t->count = (uint32_t)triangles;
-    for (uint32_t i = 0; i < b->scene->light_count; i++) {
-        if (!(light_effects(&b->scene->lights[i]) & ~b->removed)) continue;
-        light l = punctual_light(b, &b->scene->lights[i]);
-        l.owner = i + 1;
-        if (l.kind == LIGHT_DISTANT && l.one_minus_cos > 0) t->distant[t->distant_count++] = t->count;
-        b->group[t->count] = b->groups++;
-        t->lights[t->count++] = l;
-    }
+    add_punctual(b, false);
+    t->near_count = t->count;
+    add_punctual(b, true);
     if (HAS(w->plan.called, ENVIRONMENT) && !environment_build(w, b->scene, b->decoding, b->report)) return false;
     if (t->environment.present) {
         t->environment.light = t->count;

@@ -53,10 +53,10 @@ static void a_scene_is_measured(void **state) {
 
 static void growth_is_measured_axis_by_axis(void **state) {
     json_t *json = measured(*state, (const char *const[]){"bench", SCENE, "--size", "8x8", "--spp", "1", "--growth",
-                                                          "pixels:20000,depth:2,triangles:10000,instances:10,threads:1",
+                                                          "pixels:20000,depth:2,triangles:10000,instances:10,lights:10,threads:1",
                                                           "--json", NULL});
     static const struct { const char *axis; size_t rows; } axes[] = {
-        {"pixels", 2}, {"depth", 2}, {"triangles", 1}, {"instances", 2}, {"threads", 1}};
+        {"pixels", 2}, {"depth", 2}, {"triangles", 1}, {"instances", 2}, {"lights", 2}, {"threads", 1}};
     for (size_t i = 0; i < sizeof axes / sizeof *axes; i++) {
         const json_t *rows = at(json, "growth", axes[i].axis), *row;
         size_t k;

@@ -8,6 +8,7 @@
 #include "render/path/surface.h"
 #include "render/path/touch.h"
 #include "render/world/lookup.h"
+#include "tests/render/oracle_choice.h"
 
 /* One path, as it is between bounces. */
 typedef struct path {
@@ -16,6 +17,7 @@ typedef struct path {
     float pdf, squeeze, near, far;
     bool dispersed; /* it has a wavelength */
     cone cone;
+    vantage from; /* where it was last lit */
     uint64_t media;
     uint32_t depth, events; /* bounces; those of them that were in a medium, or no surface was there */
 } path;
@@ -146,14 +148,14 @@ static void escape(const path_context *c, path *p) {
     if (p->depth == 0 && c->background != KILN_BACKGROUND_ENVIRONMENT) return;
     if (t->environment.present) {
         environment_value v = environment_look_up(&t->environment, environment_place(p->direction));
-        float pdf = path_light_probability(c, t->environment.light) * v.pdf;
+        float pdf = path_light_probability(c, t->environment.light, &p->from) * v.pdf;
         collect(p, v.radiance, estimate_hit_weight(c->estimator, p->pdf, pdf));
     }
     for (uint32_t k = 0; k < t->distant_count; k++) {
         const light *l = &t->lights[t->distant[k]];
         vec3 off = v3_add(p->direction, l->axis);
         if (0.5f * v3_dot(off, off) > l->one_minus_cos) continue;
-        float pdf = path_light_probability(c, t->distant[k]) * light_distant_pdf(l->one_minus_cos);
+        float pdf = path_light_probability(c, t->distant[k], &p->from) * light_distant_pdf(l->one_minus_cos);
         collect(p, l->radiance, estimate_hit_weight(c->estimator, p->pdf, pdf));
     }
 }
@@ -317,8 +319,13 @@ static void emit(const path_context *c, path *p, const hit *h, const surface *s,
     float cosine = fabsf(v3_dot(h->p.geometric, p->direction));
     if (m->clearcoat > 0) emission = v3_scale(emission, clearcoat_dims(s->clearcoat * s->near, cosine));
     uint32_t number = w->triangle_light ? w->triangle_light[h->triangle] : LIGHT_NONE;
-    float probability = number == LIGHT_NONE ? 0.0f : path_light_probability(c, w->instances[h->instance].light_base + number);
-    float pdf = probability * light_triangle_pdf(h->p.hit.t, v3_dot(h->p.geometric, p->direction), h->p.area);
+    uint32_t which = w->instances[h->instance].light_base + number;
+    float pdf = 0;
+    if (number != LIGHT_NONE && p->pdf > 0) {
+        float towards = v3_dot(h->p.geometric, p->direction);
+        pdf = path_light_probability(c, which, &p->from) *
+              light_triangle_pdf(&w->lights.lights[which], p->from.p, h->p.hit.t, towards);
+    }
     float weight = estimate_hit_weight(c->estimator, p->pdf, pdf);
     p->radiance.x += p->throughput.x * emission.x * weight;
     p->radiance.y += p->throughput.y * emission.y * weight;
@@ -326,23 +333,21 @@ static void emit(const path_context *c, path *p, const hit *h, const surface *s,
 }
 
 /* A light, a point on it, and the density of both. plane: what parts the media of the path and those beyond. */
-static light_sampled draw_light(const path_context *c, const path *p, vec3 position, vec3 plane, uint64_t beyond,
+static light_sampled draw_light(const path_context *c, path *p, vec3 position, vec3 plane, uint64_t beyond,
                                 float *density) {
     const light_table *t = &c->world->lights;
     vec2 place = draw(c, p, SAMPLE_LIGHT);
-    float rest = place.x, fine = draw(c, p, SAMPLE_LIGHT_FINE).x;
-    uint32_t k = 0;
-    if (c->light_cdf) k = distribution_pick(c->light_cdf, c->light_guide, t->count, place.x, fine, &rest);
+    float fine = draw(c, p, SAMPLE_LIGHT_FINE).x, probability;
+    uint32_t k = choose_light(c, &p->from, &place.x, &fine, &probability);
     light l = t->lights[k];
-    place.x = rest;
     if (l.kind == LIGHT_ENVIRONMENT) environment_pick(&t->environment, place, fine, &l);
     light_sampled r = light_sample(KIND(LIGHT_KINDS) - 1, &l, position, place);
     float cosine = -v3_dot(r.wi, l.axis);
     if (l.varies)
-        r.radiance = v3_mul(r.radiance, lookup_emission(c->world, l.varies - 1, warp_triangle(place), cosine));
+        r.radiance = v3_mul(r.radiance, lookup_emission(c->world, l.varies - 1, light_triangle_place(&l, r.target), cosine));
     uint64_t media = v3_dot(r.wi, plane) < 0.0f ? beyond : p->media;
     if (medium_hides(c->world->media, l.medium, media, v3_dot(r.wi, l.axis) < 0.0f)) r.radiance = v3_splat(0);
-    *density = r.pdf * path_light_probability(c, k);
+    *density = r.pdf * probability;
     return r;
 }
 
@@ -363,6 +368,7 @@ static void reach(const path_context *c, path *p, const shading_connection *n, u
 /* Next-event estimation. */
 static void connect(const path_context *c, path *p, const hit *h, const shading *s, unsigned mask) {
     float density;
+    p->from = (vantage){s->sides.above, h->material->flags & MATERIAL_TRANSMITS ? v3_splat(0) : s->frame.z, 0};
     light_sampled r = draw_light(c, p, s->sides.above, s->sides.normal, h->beyond, &density);
     shading_connection n = shading_connect(mask, s, c->estimator, p->throughput, &r, density);
     reach(c, p, &n, medium_top(v3_dot(r.wi, s->sides.normal) < 0.0f ? h->beyond : p->media), r.distance);
@@ -388,6 +394,7 @@ static bool scatter_in_medium(const path_context *c, path *p, float distance) {
     uint32_t medium = medium_top(p->media);
     float g = c->world->media[medium].g, density;
     if (c->samples_lights) {
+        p->from = (vantage){position, v3_splat(0), 0};
         light_sampled r = draw_light(c, p, position, v3_splat(0), p->media, &density);
         vec3 to = v3_sub(r.target, position);
         bool placed = r.distance < INFINITY;

@@ -55,7 +55,7 @@ static void a_plain_scene_calls_for_little(void **state) {
     add_plain(&b);
     kiln_camera view = plain_camera();
     kiln_effect_plan plan = plan_of(&b, &view);
-    assert_int_equal(plan.called, EFFECT(AREA_LIGHTS) | EFFECT(MANY_LIGHTS));
+    assert_int_equal(plan.called, EFFECT(AREA_LIGHTS)); /* the halves of a lamp are one light */
     assert_int_equal(plan.runs, plan.called);
     const kiln_effect_use *lights = &plan.uses[KILN_EFFECT_AREA_LIGHTS];
     assert_true(lights->caller_count == 1 && lights->callers[0].kind == KILN_CALLED_BY_MATERIAL && lights->callers[0].id == 2);

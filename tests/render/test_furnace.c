@@ -28,10 +28,10 @@ static void sees_two(void **state) {
     (void)state;
     const kiln_estimator estimators[] = {KILN_ESTIMATOR_BSDF, KILN_ESTIMATOR_NEE, KILN_ESTIMATOR_MIS};
     const kiln_sampler samplers[] = {KILN_SAMPLER_SOBOL, KILN_SAMPLER_INDEPENDENT};
-    const kiln_light_sampling choices[] = {KILN_LIGHTS_POWER, KILN_LIGHTS_UNIFORM};
+    const kiln_light_sampling choices[] = {KILN_LIGHTS_TREE, KILN_LIGHTS_POWER, KILN_LIGHTS_UNIFORM};
     for (int e = 0; e < 3; e++)
         for (int s = 0; s < 2; s++)
-            for (int c = 0; c < 2; c++) {
+            for (int c = 0; c < 3; c++) {
                 kiln_render_options o = {.spp = 128, .estimator = estimators[e], .sampler = samplers[s],
                                          .light_sampling = choices[c], .roulette = {.kind = KILN_ROULETTE_OFF}, .max_depth = 24};
                 picture p = furnace(0.5f, &o);

@@ -84,6 +84,7 @@ static void at_the_depth_limit(void **state) {
     (void)state;
     check(&(kiln_render_options){.seed = 4, .max_depth = 2, .light_sampling = KILN_LIGHTS_UNIFORM,
                                  .background = KILN_BACKGROUND_COLOR, .background_color = {0.1f, 0.2f, 0.3f}});
+    check(&(kiln_render_options){.seed = 6, .max_depth = 3, .light_sampling = KILN_LIGHTS_POWER});
     check(&(kiln_render_options){.seed = 5, .max_depth = KILN_DEPTH_ZERO, .background = KILN_BACKGROUND_TRANSPARENT});
 }
 
