@@ -7,13 +7,15 @@
 
 enum { BINS = 16, AXES = 3 };
 
-/* A light that is to be placed, by its middle. Intensities sum to 1. */
+typedef struct box { vec3 low, high; } box;
+
+/* A light that is to be placed: what splits ask of it, side by side. Intensities sum to 1. */
 typedef struct item {
     float middle[AXES], intensity;
+    box box;
+    vec3 normal; /* times the intensity; 0: it has none, or two */
     uint32_t light;
 } item;
-
-typedef struct box { vec3 low, high; } box;
 
 typedef struct build {
     const light *lights;
@@ -38,8 +40,8 @@ typedef struct bin {
 } bin;
 
 static box box_empty(void) { return (box){v3_splat(INFINITY), v3_splat(-INFINITY)}; }
-static vec3 lower(vec3 a, vec3 b) { return v3(fminf(a.x, b.x), fminf(a.y, b.y), fminf(a.z, b.z)); }
-static vec3 upper(vec3 a, vec3 b) { return v3(fmaxf(a.x, b.x), fmaxf(a.y, b.y), fmaxf(a.z, b.z)); }
+static vec3 lower(vec3 a, vec3 b) { return v3(fm_min(a.x, b.x), fm_min(a.y, b.y), fm_min(a.z, b.z)); }
+static vec3 upper(vec3 a, vec3 b) { return v3(fm_max(a.x, b.x), fm_max(a.y, b.y), fm_max(a.z, b.z)); }
 
 enum { CORNERS_MAX = 4 };
 static int corners_of(const light *l, vec3 corners[CORNERS_MAX]) {
@@ -60,11 +62,10 @@ static box box_of(const light *l) {
 
 static bool has_normal(const light *l) { return l->kind != LIGHT_POINT; }
 
-static void bin_add(bin *b, const light *l, float intensity) {
-    box x = box_of(l);
-    b->box.low = lower(b->box.low, x.low), b->box.high = upper(b->box.high, x.high);
-    if (has_normal(l) && !(l->two_sided > 0.5f)) b->normals = v3_madd(b->normals, intensity, l->axis);
-    b->intensity += (double)intensity;
+static void bin_add(bin *b, const item *x) {
+    b->box.low = lower(b->box.low, x->box.low), b->box.high = upper(b->box.high, x->box.high);
+    b->normals = v3_add(b->normals, x->normal);
+    b->intensity += (double)x->intensity;
     b->count++;
 }
 static void bin_join(bin *a, const bin *b) {
@@ -85,7 +86,7 @@ static double cost_of(const bin *b) {
 
 static bin bin_of_range(const build *b, uint32_t first, uint32_t end) {
     bin r = {.box = box_empty()};
-    for (uint32_t i = first; i < end; i++) bin_add(&r, &b->lights[b->items[i].light], b->items[i].intensity);
+    for (uint32_t i = first; i < end; i++) bin_add(&r, &b->items[i]);
     return r;
 }
 
@@ -102,29 +103,52 @@ typedef struct split {
     float low, scale;
 } split;
 
-static void try_axis(const build *b, range r, int axis, const float low[AXES], const float high[AXES], float longest,
-                     split *best) {
-    bin bins[BINS], after[BINS];
-    float extent = high[axis] - low[axis], scale = (float)BINS / extent;
-    if (!(extent > 0) || !(scale < INFINITY)) return;
-    for (int k = 0; k < BINS; k++) bins[k] = (bin){.box = box_empty()};
-    for (uint32_t i = r.first; i < r.end; i++) {
-        const item *x = &b->items[i];
-        bin_add(&bins[bin_index(x->middle[axis], low[axis], scale)], &b->lights[x->light], x->intensity);
-    }
+/* The bounds of middles; NaN and infinities stay out of them. */
+typedef struct extents { float low[AXES], high[AXES], longest; } extents;
+
+static extents extents_of(const build *b, range r) {
+    extents x = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
+    for (uint32_t i = r.first; i < r.end; i++)
+        for (int a = 0; a < AXES; a++) {
+            x.low[a] = fm_min(b->items[i].middle[a], x.low[a]);
+            x.high[a] = fm_max(b->items[i].middle[a], x.high[a]);
+        }
+    for (int a = 0; a < AXES; a++) x.longest = fm_max(x.longest, x.high[a] - x.low[a]);
+    return x;
+}
+
+static void try_axis(const bin bins[BINS], int axis, const extents *x, float scale, split *best) {
+    bin after[BINS], before = {.box = box_empty()};
+    float extent = x->high[axis] - x->low[axis];
     after[BINS - 1] = bins[BINS - 1];
     for (int k = BINS - 2; k > 0; k--) {
         after[k] = bins[k];
         bin_join(&after[k], &after[k + 1]);
     }
-    bin before = {.box = box_empty()};
     for (uint32_t k = 1; k < BINS; k++) {
         bin_join(&before, &bins[k - 1]);
         if (!before.count || !after[k].count) continue;
         /* Thin boxes come of cuts across short axes. */
-        double cost = (cost_of(&before) + cost_of(&after[k])) * (double)(longest / extent);
-        if (cost < best->cost) *best = (split){cost, axis, k, low[axis], scale};
+        double cost = (cost_of(&before) + cost_of(&after[k])) * (double)(x->longest / extent);
+        if (cost < best->cost) *best = (split){cost, axis, k, x->low[axis], scale};
     }
+}
+
+/* The best plane; none where all middles are one. */
+static split find_split(const build *b, range r) {
+    extents x = extents_of(b, r);
+    split best = {.cost = INFINITY, .axis = -1};
+    for (int a = 0; a < AXES; a++) {
+        bin bins[BINS];
+        float scale = (float)BINS / (x.high[a] - x.low[a]);
+        /* An axis along which little happens would give thin boxes, or none. */
+        if (!(x.high[a] - x.low[a] > 0x1p-10f * x.longest) || !(scale < INFINITY)) continue;
+        for (int k = 0; k < BINS; k++) bins[k] = (bin){.box = box_empty()};
+        for (uint32_t i = r.first; i < r.end; i++)
+            bin_add(&bins[bin_index(b->items[i].middle[a], x.low[a], scale)], &b->items[i]);
+        try_axis(bins, a, &x, scale, &best);
+    }
+    return best;
 }
 
 static int by_middle_x(const void *a, const void *b) {
@@ -135,15 +159,7 @@ static int by_middle_x(const void *a, const void *b) {
 
 /* Where the second half of a range begins, which is put in order for it: 2 items at least. */
 static uint32_t divide(const build *b, range r, bool evenly) {
-    float low[AXES] = {INFINITY, INFINITY, INFINITY}, high[AXES] = {-INFINITY, -INFINITY, -INFINITY}, longest = 0;
-    for (uint32_t i = r.first; i < r.end; i++)
-        for (int a = 0; a < AXES; a++) {
-            low[a] = fminf(low[a], b->items[i].middle[a]);
-            high[a] = fmaxf(high[a], b->items[i].middle[a]);
-        }
-    for (int a = 0; a < AXES; a++) longest = fmaxf(longest, high[a] - low[a]);
-    split best = {.cost = INFINITY, .axis = -1};
-    for (int a = 0; a < AXES && !evenly; a++) try_axis(b, r, a, low, high, longest, &best);
+    split best = evenly ? (split){.axis = -1} : find_split(b, r);
     if (best.axis < 0) {
         if (evenly) qsort(b->items + r.first, r.end - r.first, sizeof *b->items, by_middle_x);
         return r.first + (r.end - r.first) / 2;
@@ -168,8 +184,10 @@ static int children_of(const build *b, range whole, bool evenly, range children[
     int count = 1;
     for (children[0] = whole, children[0].cost = 1; count < TREE_WIDTH; count++) {
         int worst = -1;
-        for (int k = 0; k < count; k++)
-            if (children[k].end - children[k].first > 1 && (worst < 0 || children[k].cost > children[worst].cost)) worst = k;
+        for (int k = 0; k < count; k++) {
+            bool divisible = children[k].end - children[k].first > 1;
+            if (divisible && (worst < 0 || children[k].cost > children[worst].cost)) worst = k;
+        }
         if (worst < 0) break;
         uint32_t middle = divide(b, children[worst], evenly);
         for (int k = count; k > worst + 1; k--) children[k] = children[k - 1];
@@ -211,7 +229,8 @@ static void set_cone(const build *b, range r, light_node *n, int slot, bool two_
 
 /* The sphere about the middle of the box. Nothing is smaller than its rounding errors. */
 static void set_sphere(const build *b, range r, box all, light_node *n, int slot) {
-    vec3 middle = v3_scale(v3_add(all.low, all.high), 0.5f), corners[CORNERS_MAX], reach = upper(v3_abs(all.low), v3_abs(all.high));
+    vec3 middle = v3_scale(v3_add(all.low, all.high), 0.5f), corners[CORNERS_MAX];
+    vec3 reach = upper(v3_abs(all.low), v3_abs(all.high));
     float radius2 = 0, error = 0x1p-20f * v3_max(reach);
     for (uint32_t i = r.first; i < r.end; i++)
         for (int k = corners_of(&b->lights[b->items[i].light], corners); k-- > 0;) {
@@ -277,11 +296,12 @@ static void list_items(build *b, const float *intensity, uint32_t count, double 
     for (uint32_t i = 0; i < count; i++) {
         b->trails[i] = TREE_NOWHERE;
         if (!(intensity[i] > 0)) continue;
-        box x = box_of(&b->lights[i]);
+        const light *l = &b->lights[i];
+        bool one_sided = has_normal(l) && !(l->two_sided > 0.5f);
         item *to = &b->items[placed++];
-        v3_store(to->middle, v3_scale(v3_add(x.low, x.high), 0.5f));
-        to->intensity = (float)((double)intensity[i] * scale);
-        to->light = i;
+        *to = (item){.intensity = (float)((double)intensity[i] * scale), .box = box_of(l), .light = i};
+        if (one_sided) to->normal = v3_scale(l->axis, to->intensity);
+        v3_store(to->middle, v3_scale(v3_add(to->box.low, to->box.high), 0.5f));
     }
 }
 

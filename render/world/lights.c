@@ -242,10 +242,14 @@ static float light_intensity(const build *b, uint32_t i) {
     return 0;
 }
 
-/* Two triangles of one material: nearly always the halves of a lamp. */
-static bool is_one_lamp(const build *b) {
+/* Do places tell lights apart? Not a single one from those that have none, whose share power judges as well for less;
+ * nor two triangles of one material, which are the halves of a lamp. A tree that is forced on a scene is built for
+ * whatever there is. */
+static bool wants_tree(const build *b) {
     const light_table *t = &b->world->lights;
-    return t->near_count == 2 && b->group[0] == b->group[1];
+    bool forced = !HAS(b->world->plan.called, MANY_LIGHTS);
+    bool alone = t->near_count < 2 || (t->near_count == 2 && b->group[0] == b->group[1]);
+    return HOLDS(b->world, MANY_LIGHTS) && (forced || !alone);
 }
 
 /* Over the lights that have a place, where a place tells them apart. */
@@ -253,7 +257,7 @@ static bool add_tree(build *b, float *intensity) {
     world *w = b->world;
     light_table *t = &w->lights;
     double near = 0, far = 0;
-    if (!HOLDS(w, MANY_LIGHTS) || is_one_lamp(b)) return true;
+    if (!wants_tree(b)) return true;
     for (uint32_t i = 0; i < t->count; i++) {
         intensity[i] = light_intensity(b, i);
         *(i < t->near_count ? &near : &far) += (double)intensity[i];
