@@ -99,20 +99,12 @@ static void of_all_sizes(stream *r, uint32_t i, light *l) {
     finish_triangle(l);
 }
 
-/* A row whose first lights are all that matters, and of the others again: each split cuts off a sixteenth. */
-static void fading(stream *r, uint32_t i, light *l) {
-    (void)r;
-    l->kind = LIGHT_POINT;
-    l->position = v3((float)i / 3000, 0, 0);
-    l->radiance = v3_splat(ldexpf(1, -(int)(i / 15)));
-}
-
 typedef struct row { const char *name; uint32_t count; place_light *place; } row;
 static const row rows[] = {{"one", 1, small_triangles}, {"eight points", 8, points}, {"nine points", 9, points},
                            {"triangles", 300, small_triangles}, {"two-sided", 300, two_sided_triangles},
                            {"spots", 300, spots}, {"mixed", 1000, mixed}, {"a lamp", 62, one_lamp},
                            {"in one place", 100, in_one_place}, {"halving", 2000, halving},
-                           {"of all sizes", 1000, of_all_sizes}, {"fading", 1500, fading}};
+                           {"of all sizes", 1000, of_all_sizes}};
 enum { ROWS = sizeof rows / sizeof *rows };
 
 /* Somewhere: in the scene, on a light, next to one, far away; with a normal or without. */
@@ -226,6 +218,26 @@ static void what_can_light_a_point_can_be_chosen(void **state) {
     assert_true(lit > 100000 && dark > 100000); /* bounds that say nothing would pass */
 }
 
+/* Each half as far away as the one before, over all exponents of floats: splits by cost would take 23 levels. */
+static void halving_all_the_way(stream *r, uint32_t i, light *l) {
+    (void)r;
+    l->kind = LIGHT_POINT;
+    l->position = v3(ldexpf(1, 120 - (int)(i % 250)), (float)(i / 250) * 1e-3f, 0);
+}
+
+static void trails_lead_to_their_lights(void **state) {
+    (void)state;
+    lights s = lights_make(24000, 81, halving_all_the_way);
+    for (uint32_t i = 0; i < s.count; i++) {
+        uint64_t trail = s.tree->trails[i];
+        uint32_t child = 0;
+        for (int level = 0; level < TREE_LEVELS && !(child & TREE_LEAF); level++, trail >>= TREE_SLOT_BITS)
+            child = s.tree->nodes[child & TREE_INDEX].child[trail & (TREE_WIDTH - 1)];
+        assert_true(child & TREE_LEAF && (child & TREE_INDEX) == i && trail == 0);
+    }
+    lights_free(&s);
+}
+
 /* A light beside the point is chosen more often than one far away, one that faces it more often than one that does not. */
 static void near_and_facing_lights_come_first(void **state) {
     (void)state;
@@ -297,6 +309,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(probabilities_sum_to_one),  cmocka_unit_test(choices_follow_probabilities),
         cmocka_unit_test(what_can_light_a_point_can_be_chosen), cmocka_unit_test(near_and_facing_lights_come_first),
         cmocka_unit_test(the_far_have_their_share),  cmocka_unit_test(extremes_are_survived),
+        cmocka_unit_test(trails_lead_to_their_lights),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]); /* of mutants: the case that must see them */
     return cmocka_run_group_tests(tests, NULL, NULL);
