@@ -95,7 +95,8 @@ file_identity file_identify(const char *path) {
     struct stat status;
     bool exists = (is_stream(path) ? fstat(STDIN_FILENO, &status) : stat(path, &status)) == 0;
     if (!exists || !S_ISREG(status.st_mode)) return (file_identity){0};
-    return (file_identity){true, (uint64_t)status.st_dev, (uint64_t)status.st_ino};
+    uint64_t changed = (uint64_t)status.st_mtim.tv_sec * 1000000000u + (uint64_t)status.st_mtim.tv_nsec;
+    return (file_identity){true, (uint64_t)status.st_dev, (uint64_t)status.st_ino, (uint64_t)status.st_size, changed};
 }
 
 /* The folder that a name lies in, "." for a bare one; free(). */

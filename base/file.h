@@ -19,6 +19,7 @@ void file_free(kiln_bytes *bytes);
 typedef struct file_identity {
     bool known; /* it is a regular file that exists */
     uint64_t device, inode;
+    uint64_t size, changed; /* bytes; nanoseconds since 1970: another content is another pair, as good as always */
 } file_identity;
 file_identity file_identify(const char *path); /* "-": of standard input */
 static inline bool file_same(file_identity a, file_identity b) {

@@ -21,6 +21,7 @@ typedef struct cli_args {
     cli_talk talk;
     const char *scene; /* the first positional argument; NULL: none */
     const char *other; /* the second, of commands that take one */
+    const char *folder; /* that -o named last; NULL: none */
     bool picture_on_stdout;
 } cli_args;
 
@@ -34,7 +35,7 @@ typedef struct cli_command {
     int (*run)(const struct cli_command *, cli_args *, kiln_report *); /* the exit code */
 } cli_command;
 
-extern const cli_command cli_render, cli_inspect, cli_bench, cli_color, cli_info, cli_help, cli_version;
+extern const cli_command cli_render, cli_inspect, cli_bench, cli_study, cli_color, cli_info, cli_help, cli_version;
 extern const cli_command *const cli_commands[]; /* NULL at the end */
 
 enum { EXIT_USAGE = 2 };

@@ -5,7 +5,7 @@
 #include "cli/cli.h"
 #include "cli/log.h"
 
-const cli_command *const cli_commands[] = {&cli_render, &cli_inspect, &cli_bench,   &cli_color,
+const cli_command *const cli_commands[] = {&cli_render, &cli_inspect, &cli_study, &cli_bench,   &cli_color,
                                            &cli_info,   &cli_help,    &cli_version, NULL};
 
 static const cli_command *find(const char *name) {

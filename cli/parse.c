@@ -63,6 +63,7 @@ static bool unknown(const parser *p, const char *argument, size_t length) {
 
 static bool set(parser *p, const option_row *row, bool talk, const char *value) {
     if (!talk && strcmp(row->name, "output") == 0 && strcmp(value, "-") == 0) p->args->picture_on_stdout = true;
+    if (!talk && strcmp(row->name, "output") == 0) p->args->folder = value;
     if (!talk) return kiln_job_set(p->args->job, row->name, value, p->report);
     kiln_text flag = {0};
     text_format(&flag, "--%s", row->name);

@@ -13,6 +13,7 @@
 #include "job/inspect.h"
 #include "job/run.h"
 #include "job/stats.h"
+#include "job/study.h"
 
 struct kiln_job {
     job_options options;
@@ -157,6 +158,14 @@ char *kiln_job_inspect(kiln_job *job, const char *path, kiln_report *report) {
     bool done = run_start(&job->run, &job->options, &job->events, path, report) && inspect(&job->run, &json);
     if (!done) json = inspect_failure(path, report);
     return hand_out(json, "inspecting", report);
+}
+
+char *kiln_job_study(kiln_job *job, const char *path, kiln_report *report) {
+    forget(job);
+    json_t *json = NULL;
+    if (run_start(&job->run, &job->options, &job->events, path ? path : "generated", report))
+        study_run(&job->run, path, &json);
+    return hand_out(json ? json : json_object(), "studying", report);
 }
 
 char *kiln_job_compare(kiln_job *job, const char *path, const char *reference, kiln_report *report) {

@@ -170,9 +170,19 @@ static void warn_of_holes(const job_run *r) {
                    (unsigned long long)r->stats.unsampled);
 }
 
+static void warn_of_estimator(const job_run *r) {
+    kiln_where where = where_root("--estimator");
+    kiln_estimator e = r->options->estimator;
+    if (e == KILN_ESTIMATOR_NAIVE || e == KILN_ESTIMATOR_DOUBLED)
+        report_warning(r->report, KILN_CODE_USAGE, &where, "use bsdf, nee or mis",
+                       "this estimator is wrong on purpose: the picture %s",
+                       e == KILN_ESTIMATOR_NAIVE ? "lacks light" : "has light twice");
+}
+
 bool run_render(job_run *r) {
     kiln_render_options options = run_render_options(r);
     r->rendered = true;
+    warn_of_estimator(r);
     if (!kiln_render(r->renderer, &options, r->film, &r->stats, r->report)) return false;
     r->error = kiln_film_estimate_error(r->film, exp2(r->exposure));
     warn_of_discarded(r);

@@ -68,10 +68,11 @@ typedef struct job_options {
     const char *growth; /* of kiln bench: what varies; NULL: nothing */
     kiln_metric metric; /* of kiln color */
     double threshold;
+    const char *preset, *reference; /* of kiln study; reference NULL: it makes its own */
 } job_options;
 
 /* What option_row.also and .except mean here. */
-enum { JOB_INSPECT = 1, JOB_INFO = 2, JOB_BENCH = 4, JOB_RENDER = 8, JOB_COLOR = 16 };
+enum { JOB_INSPECT = 1, JOB_INFO = 2, JOB_BENCH = 4, JOB_RENDER = 8, JOB_COLOR = 16, JOB_STUDY = 32 };
 
 extern const option_table job_option_table;
 

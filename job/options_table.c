@@ -4,7 +4,8 @@
 #define FIELD(name) .offset = offsetof(job_options, name)
 
 static const option_choice estimators[] = {
-    {"bsdf", KILN_ESTIMATOR_BSDF}, {"nee", KILN_ESTIMATOR_NEE}, {"mis", KILN_ESTIMATOR_MIS}, {NULL, 0}};
+    {"bsdf", KILN_ESTIMATOR_BSDF},   {"nee", KILN_ESTIMATOR_NEE},         {"mis", KILN_ESTIMATOR_MIS},
+    {"naive", KILN_ESTIMATOR_NAIVE}, {"doubled", KILN_ESTIMATOR_DOUBLED}, {NULL, 0}};
 static const option_choice samplers[] = {
     {"sobol", KILN_SAMPLER_SOBOL}, {"independent", KILN_SAMPLER_INDEPENDENT}, {NULL, 0}};
 static const option_choice light_samplings[] = {
@@ -25,7 +26,7 @@ static const option_choice metrics[] = {{"relmse", KILN_METRIC_RELMSE},
 
 static const char picture[] = "Picture", quality[] = "When it ends", estimator[] = "Estimator", camera[] = "Camera",
                   light[] = "Light", surface[] = "Surfaces", color[] = "Colour", machine[] = "Machine",
-                  measure[] = "Measure", compare[] = "Pictures";
+                  measure[] = "Measure", compare[] = "Pictures", study[] = "Study";
 
 /* In the order of kiln/film.h. */
 #define AOV_NAMES                                                                                                      \
@@ -37,16 +38,17 @@ static const option_row rows[] = {
     {"output", 'o', "FILE", picture,
      "by suffix: .exr scene-linear with AOVs and metadata, .hdr scene-linear, .png .jpg .webp .tif as displayed; "
      "'-' is a PNG on stdout; repeatable; {name} {camera} {frame:4} {variant} and #### are filled in",
-     NULL, "{name}.png", "a file name", &option_texts, FIELD(outputs), .also = JOB_COLOR, .except = JOB_BENCH},
+     NULL, "{name}.png", "a file name", &option_texts, FIELD(outputs), .also = JOB_COLOR,
+     .except = JOB_BENCH | JOB_STUDY},
     {"size", 0, "WxH", picture, "pixels", NULL, "1024x1024, or 1024 and the aspect of the scene's camera",
      "a size WxH of 1 to 65536 pixels a side", &option_size, FIELD(size), .also = JOB_INSPECT},
     {"crop", 0, "X0,Y0,X1,Y1", picture, "renders that part alone; pixels, right and bottom exclusive", NULL, NULL,
-     "a part X0,Y0,X1,Y1 of the picture with X0 < X1 and Y0 < Y1", &option_crop, FIELD(crop)},
+     "a part X0,Y0,X1,Y1 of the picture with X0 < X1 and Y0 < Y1", &option_crop, FIELD(crop), .except = JOB_STUDY},
     {"aov", 0, "LIST", picture,
      "layers of .exr files: " AOV_NAMES ". Of lights and lobes '*' means all; what is left out is one more layer, so "
      "that each of the three divisions sums to the picture exactly",
      NULL, NULL, "a list such as albedo,lobe:*,lightgroup:key of " AOV_NAMES, &option_layers, FIELD(layers),
-     .also = JOB_INSPECT},
+     .also = JOB_INSPECT, .except = JOB_STUDY},
 
     {"spp", 0, "N", quality, "samples per pixel; the same bits for any number of threads", NULL,
      "1024 with --noise 3%; bench: 16", "a whole number from 1 to 16777216", &option_count, .low = 1, .high = 16777216, FIELD(spp)},
@@ -65,8 +67,9 @@ static const option_row rows[] = {
     {"filter", 0, "KIND[:WIDTH]", estimator, "box, gaussian or blackman-harris, with its diameter in pixels",
      "blackman-harris:1.5", NULL, "a filter such as box:1, gaussian:2 or blackman-harris:1.5 of at most 16 pixels",
      &option_filter, FIELD(filter)},
-    {"estimator", 0, "NAME", estimator, "bsdf, nee, or mis: both combined", "mis", NULL, "an estimator",
-     &option_choices, estimators, FIELD(estimator)},
+    {"estimator", 0, "NAME", estimator,
+     "bsdf, nee, or mis: both combined; naive and doubled are wrong on purpose, for 'kiln study'", "mis", NULL,
+     "an estimator", &option_choices, estimators, FIELD(estimator)},
     {"roulette", 0, "POLICY", estimator, "Russian roulette: off, fixed:P, throughput[:MIN] or auto", "auto", NULL,
      "off, auto, fixed:P with 0 < P <= 1, or throughput[:MIN] with a number of guaranteed bounces", &option_roulette,
      FIELD(roulette)},
@@ -104,7 +107,7 @@ static const option_row rows[] = {
      &option_number, .high = 1e12, FIELD(env_intensity), .also = JOB_INSPECT},
     {"background", 0, "env|transparent|#RRGGBB", light,
      "what the camera sees where nothing is; a colour is what the display shows", "env", NULL,
-     "env, transparent or a colour #RRGGBB", &option_background, FIELD(background)},
+     "env, transparent or a colour #RRGGBB", &option_background, FIELD(background), .except = JOB_STUDY},
 
     {"subdivide", 0, "auto|off|N", surface,
      "auto refines what is evidently a smooth surface, N refines every mesh N times", "auto", NULL,
@@ -142,22 +145,33 @@ static const option_row rows[] = {
     {"embree-config", 0, "STRING", machine, "passed to Embree's device, such as isa=avx2", NULL, NULL,
      "a list of Embree's settings such as isa=avx2,hugepages=1", &option_embree, FIELD(embree_config)},
     {"stats", 0, "FILE.json", machine, "writes everything that the run knows about itself", NULL, NULL, "a file name",
-     &option_text, FIELD(stats), .except = JOB_BENCH},
+     &option_text, FIELD(stats), .except = JOB_BENCH | JOB_STUDY},
     {"strict", 0, NULL, machine, "an import warning or a discarded sample is a failure", NULL, NULL, "true or false",
-     &option_toggle, FIELD(strict), .also = JOB_INSPECT, .except = JOB_BENCH},
+     &option_toggle, FIELD(strict), .also = JOB_INSPECT, .except = JOB_BENCH | JOB_STUDY},
 
     {"embree", 0, NULL, measure, "replays the rays of the render through Embree and nothing else", NULL, NULL,
-     "true or false", &option_toggle, FIELD(embree), .also = JOB_BENCH, .except = JOB_RENDER},
+     "true or false", &option_toggle, FIELD(embree), .also = JOB_BENCH, .except = JOB_RENDER | JOB_STUDY},
     {"growth", 0, "LIST", measure,
      "how time and memory grow with pixels, triangles, instances, lights, depth, threads, or all; 'triangles:1e6' ends there",
-     NULL, NULL, "a list", &option_text, FIELD(growth), .also = JOB_BENCH, .except = JOB_RENDER},
+     NULL, NULL, "a list", &option_text, FIELD(growth), .also = JOB_BENCH, .except = JOB_RENDER | JOB_STUDY},
 
     {"metric", 0, "NAME", compare,
      "relmse, mse or mae of the files' numbers, or flip: what is seen; of scene-linear files over all exposures",
-     NULL, "all of them; of --threshold and -o relmse", "a metric", &option_choices, metrics, FIELD(metric), .also = JOB_COLOR,
-     .except = JOB_RENDER | JOB_BENCH},
+     NULL, "all of them; of --threshold and -o relmse", "a metric", &option_choices, metrics, FIELD(metric),
+     .also = JOB_COLOR, .except = JOB_RENDER | JOB_BENCH | JOB_STUDY},
     {"threshold", 0, "X", compare, "exit code 1 when the error is above X", NULL, NULL, "a number from 0 to 1e30",
-     &option_number, .high = 1e30, FIELD(threshold), .also = JOB_COLOR, .except = JOB_RENDER | JOB_BENCH},
+     &option_number, .high = 1e30, FIELD(threshold), .also = JOB_COLOR, .except = JOB_RENDER | JOB_BENCH | JOB_STUDY},
+
+    {"output", 'o', "DIR", study,
+     "folder for report.html, rows.csv, study.json and pictures; a study that was begun there goes on", NULL, NULL,
+     "the name of a folder", &option_texts, FIELD(outputs), .also = JOB_STUDY, .except = JOB_RENDER | JOB_BENCH},
+    {"preset", 0, "NAME", study,
+     "default, every setting that matters here; roulette, estimators, each with a scene of its own where none is "
+     "given; effects, the price of each", "default", NULL, "a preset", &option_text, FIELD(preset), .also = JOB_STUDY,
+     .except = JOB_RENDER | JOB_BENCH},
+    {"reference", 0, "FILE", study, "scene-linear picture (.exr, .hdr) to measure errors against", NULL,
+     "made by another estimator and other seeds", "the name of a file", &option_text, FIELD(reference),
+     .also = JOB_STUDY, .except = JOB_RENDER | JOB_BENCH},
 };
 
 const option_table job_option_table = {rows, sizeof rows / sizeof *rows};

@@ -7,7 +7,7 @@
 
 /* What a program cannot have meant; NaN is refused with the rest. */
 static const char *what_is_unknown(const kiln_render_options *o) {
-    return (unsigned)o->estimator > KILN_ESTIMATOR_BSDF            ? "estimator"
+    return (unsigned)o->estimator > KILN_ESTIMATOR_DOUBLED         ? "estimator"
            : (unsigned)o->roulette.kind > KILN_ROULETTE_THROUGHPUT ? "kind of roulette"
            : (unsigned)o->sampler > KILN_SAMPLER_INDEPENDENT       ? "sampler"
            : (unsigned)o->light_sampling > KILN_LIGHTS_UNIFORM     ? "choice of lights"

@@ -116,6 +116,9 @@ KILN_API kiln_film_desc kiln_film_describe(const kiln_film *);
  * radiance in cd/m² per channel, in the working space of the renderer's decoding; 0 where there are no samples yet. */
 KILN_API void kiln_film_beauty(const kiln_film *, float *rgb);
 KILN_API bool kiln_film_aov(const kiln_film *, kiln_aov, float *values); /* false: the film does not hold it */
+/* The same picture from one half of the samples, the even or the odd ones (0, 1), which know nothing of each other: what
+ * both say is no noise. False before every pixel has one of them. */
+KILN_API bool kiln_film_half(const kiln_film *, uint32_t half, float *rgb);
 
 /* The parts that the film holds, then the rests of divisions that are not there completely. */
 typedef struct kiln_film_part_info {

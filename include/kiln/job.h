@@ -68,6 +68,12 @@ KILN_API char *kiln_job_inspect(kiln_job *, const char *path, kiln_report *);
  * out of memory. */
 KILN_API char *kiln_job_bench(kiln_job *, const char *path, kiln_report *);
 
+/* What accuracy costs in time on a scene (docs/study.md): many settings, several seeds each, into the folder that the
+ * option "output" names; a study that was interrupted there goes on. JSON, as in study.json; free(). path NULL: a scene
+ * that the option "preset" brings along. Where an error was added it may lack what was not measured. NULL: out of
+ * memory. */
+KILN_API char *kiln_job_study(kiln_job *, const char *path, kiln_report *);
+
 /* Compares two pictures, files of any format that kiln reads, by the option "metric" or by all metrics: JSON; free().
  * What is transparent lies on black. Integers are display-referred, 0 … 1; floats are scene-linear, and taken for
  * Rec.709 by FLIP; one of each is an error. With the option "output" a map of the errors is written, as numbers or in

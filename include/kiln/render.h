@@ -71,7 +71,10 @@ typedef enum kiln_estimator {
     KILN_ESTIMATOR_MIS,  /* light and BSDF samples combined by the power heuristic (Veach 1997) */
     KILN_ESTIMATOR_NEE,  /* light samples at every bounce; emission that the BSDF finds counts only at the first hit,
                             after a perfectly specular bounce, or from emitters that no light sample can reach */
-    KILN_ESTIMATOR_BSDF  /* emission only by hitting it; punctual lights, which nothing can hit, are still sampled */
+    KILN_ESTIMATOR_BSDF, /* emission only by hitting it; punctual lights, which nothing can hit, are still sampled */
+    /* Wrong on purpose: what NEE is without its rule for specular bounces. For studies, never for pictures. */
+    KILN_ESTIMATOR_NAIVE,  /* emission never counts where a bounce finds it */
+    KILN_ESTIMATOR_DOUBLED /* it always counts, beside the light samples */
 } kiln_estimator;
 
 typedef enum kiln_roulette_kind {

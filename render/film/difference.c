@@ -1,4 +1,4 @@
-/* render/film/difference.c: how far two pictures of one thing are apart. */
+/* render/film/difference.c: how far two pictures of one thing are apart, and the halves of one that tell it. */
 #include <math.h>
 
 #include "kiln/difference.h"
@@ -11,6 +11,13 @@ static double replicate_mean(const kiln_film *f, size_t pixel, uint32_t replicat
 }
 
 _Static_assert(KILN_REPLICATES == 2, "one difference for each factor of the square");
+
+bool kiln_film_half(const kiln_film *f, uint32_t half, float *rgb) {
+    if (half >= KILN_REPLICATES || kiln_film_spp(f) < KILN_REPLICATES) return false;
+    for (size_t i = 0; i < (size_t)f->width * f->height; i++)
+        for (int k = 0; k < 3; k++) rgb[3 * i + (size_t)k] = (float)replicate_mean(f, i, half, k);
+    return true;
+}
 
 kiln_film_difference kiln_film_compare(const kiln_film *film, const kiln_film *reference, double scale) {
     kiln_film_difference d = {0};

@@ -43,7 +43,7 @@ void STAGE(emission)(const path_context *c, batch *b) {
     if (HAS(c->effects, CLEARCOAT)) dim(c, b);
     path_state *s = batch_state(b);
     const path_scratch *x = &b->scratch;
-    kiln_estimator estimator = c->estimator;
+    kiln_estimator estimator = estimate_hits_by(c->estimator, b->depth);
     LANE_LOOP (uint32_t i = 0; i < b->surfaces; i++) {
         float weight = estimate_hit_weight(estimator, s->pdf[i], x->light_pdf[i]);
         s->lr[i] += s->tr[i] * x->emit_r[i] * weight;

@@ -17,6 +17,7 @@ static void add_suns(const path_context *c, batch *b, uint32_t i) {
     const light_table *t = &c->world->lights;
     path_state *s = batch_state(b);
     vec3 d = {s->dx[i], s->dy[i], s->dz[i]};
+    kiln_estimator estimator = estimate_hits_by(c->estimator, b->depth);
     for (uint32_t k = 0; k < t->distant_count; k++) {
         const light *l = &t->lights[t->distant[k]];
         vec3 off = v3_add(d, l->axis); /* 1 − cos = |d − toward|²/2: exact for small disks */
@@ -24,7 +25,7 @@ static void add_suns(const path_context *c, batch *b, uint32_t i) {
         vantage from = path_vantage(c, s, i);
         float probability = path_light_probability(c, t->distant[k], &from);
         float light_pdf = probability * light_distant_pdf(l->one_minus_cos);
-        add(s, i, v3_scale(l->radiance, estimate_hit_weight(c->estimator, s->pdf[i], light_pdf)));
+        add(s, i, v3_scale(l->radiance, estimate_hit_weight(estimator, s->pdf[i], light_pdf)));
         if (c->parts) STAGE(part_found)(c, b, i, c->parts->of_light[l->owner]);
     }
 }
@@ -39,13 +40,14 @@ static void add_environment(const path_context *c, batch *b, uint32_t count) {
         x->tu[k] = place.x;
         x->tv[k] = place.y;
     }
+    kiln_estimator estimator = estimate_hits_by(c->estimator, b->depth);
     for (uint32_t k = 0; k < count; k++) {
         uint32_t i = x->list[k], ahead = k + AHEAD_TEXELS;
         vantage from = path_vantage(c, s, i);
         float probability = path_light_probability(c, e->light, &from);
         if (ahead < count) environment_prefetch_place(e, (vec2){x->tu[ahead], x->tv[ahead]});
         environment_value v = environment_look_up(e, (vec2){x->tu[k], x->tv[k]});
-        float weight = estimate_hit_weight(c->estimator, s->pdf[i], probability * v.pdf);
+        float weight = estimate_hit_weight(estimator, s->pdf[i], probability * v.pdf);
         add(s, i, v3_scale(v.radiance, weight));
     }
 }

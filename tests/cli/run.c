@@ -30,7 +30,7 @@ static void empty(const char *path) {
     DIR *folder = opendir(path);
     for (struct dirent *entry; folder && (entry = readdir(folder));) {
         snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
-        if (strcmp(entry->d_name, ".") && strcmp(entry->d_name, "..") && unlink(name)) rmdir(name);
+        if (strcmp(entry->d_name, ".") && strcmp(entry->d_name, "..") && unlink(name)) empty(name);
     }
     if (folder) closedir(folder);
     rmdir(path);

@@ -91,6 +91,8 @@ static const struct { const char *name, *given, *printed;
     {"growth", "pixels,triangles:1e6", NULL},
     {"metric", "flip", NULL},
     {"threshold", "0.01", NULL},
+    {"preset", "roulette", NULL},
+    {"reference", "reference.exr", NULL},
 };
 
 static void print_value(const fixture *f, const char *name, kiln_text *out) {

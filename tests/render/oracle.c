@@ -149,14 +149,14 @@ static void escape(const path_context *c, path *p) {
     if (t->environment.present) {
         environment_value v = environment_look_up(&t->environment, environment_place(p->direction));
         float pdf = path_light_probability(c, t->environment.light, &p->from) * v.pdf;
-        collect(p, v.radiance, estimate_hit_weight(c->estimator, p->pdf, pdf));
+        collect(p, v.radiance, estimate_hit_weight(estimate_hits_by(c->estimator, p->depth), p->pdf, pdf));
     }
     for (uint32_t k = 0; k < t->distant_count; k++) {
         const light *l = &t->lights[t->distant[k]];
         vec3 off = v3_add(p->direction, l->axis);
         if (0.5f * v3_dot(off, off) > l->one_minus_cos) continue;
         float pdf = path_light_probability(c, t->distant[k], &p->from) * light_distant_pdf(l->one_minus_cos);
-        collect(p, l->radiance, estimate_hit_weight(c->estimator, p->pdf, pdf));
+        collect(p, l->radiance, estimate_hit_weight(estimate_hits_by(c->estimator, p->depth), p->pdf, pdf));
     }
 }
 
@@ -326,7 +326,7 @@ static void emit(const path_context *c, path *p, const hit *h, const surface *s,
         pdf = path_light_probability(c, which, &p->from) *
               light_triangle_pdf(&w->lights.lights[which], p->from.p, h->p.hit.t, towards);
     }
-    float weight = estimate_hit_weight(c->estimator, p->pdf, pdf);
+    float weight = estimate_hit_weight(estimate_hits_by(c->estimator, p->depth), p->pdf, pdf);
     p->radiance.x += p->throughput.x * emission.x * weight;
     p->radiance.y += p->throughput.y * emission.y * weight;
     p->radiance.z += p->throughput.z * emission.z * weight;

@@ -120,6 +120,26 @@ static void specular_chains(void **state) {
     compare(build_specular, &view, (uint32_t[]){512, 512, 512});
 }
 
+/* What the rule for specular bounces is for: without it light is lost, or counted twice. */
+static void wrong_estimators_are_wrong(void **state) {
+    (void)state;
+    static const kiln_estimator estimators[] = {KILN_ESTIMATOR_MIS, KILN_ESTIMATOR_NAIVE, KILN_ESTIMATOR_DOUBLED};
+    kiln_camera view = room_camera();
+    means m[3];
+    for (int e = 0; e < 3; e++) {
+        scene_builder b = builder_make();
+        build_specular(&b);
+        kiln_render_options o = {.spp = 64, .estimator = estimators[e], .seed = 1, .max_depth = 6};
+        picture p = render(&b, &view, &o, SIDE, SIDE);
+        m[e] = measure(p.film);
+        picture_free(&p);
+        builder_free(&b);
+    }
+    const double right = m[0].value[VALUES - 1], error = m[0].error[VALUES - 1];
+    assert_true(m[1].value[VALUES - 1] < right - deviations * (error + m[1].error[VALUES - 1]));
+    assert_true(m[2].value[VALUES - 1] > right + deviations * (error + m[2].error[VALUES - 1]));
+}
+
 static void build_textured(scene_builder *b) {
     float pixels[16 * 3];
     for (int i = 0; i < 16; i++)
@@ -261,6 +281,7 @@ static void many_lights(void **state) {
 
 int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(diffuse_room),     cmocka_unit_test(specular_chains),
+                                       cmocka_unit_test(wrong_estimators_are_wrong),
                                        cmocka_unit_test(textured_emitter), cmocka_unit_test(partial_emitters),
                                        cmocka_unit_test(small_sun),
                                        cmocka_unit_test(glossy_under_a_sky), cmocka_unit_test(translucent),

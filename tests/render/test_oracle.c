@@ -80,6 +80,11 @@ static void by_bsdf(void **state) {
     (void)state;
     check(&(kiln_render_options){.seed = 3, .estimator = KILN_ESTIMATOR_BSDF, .roulette = {.kind = KILN_ROULETTE_OFF}, .max_depth = 12});
 }
+static void by_the_wrong_ones(void **state) {
+    (void)state;
+    check(&(kiln_render_options){.seed = 6, .estimator = KILN_ESTIMATOR_NAIVE});
+    check(&(kiln_render_options){.seed = 7, .estimator = KILN_ESTIMATOR_DOUBLED});
+}
 static void at_the_depth_limit(void **state) {
     (void)state;
     check(&(kiln_render_options){.seed = 4, .max_depth = 2, .light_sampling = KILN_LIGHTS_UNIFORM,
@@ -90,6 +95,7 @@ static void at_the_depth_limit(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(by_mis), cmocka_unit_test(by_nee), cmocka_unit_test(by_bsdf),
+                                       cmocka_unit_test(by_the_wrong_ones),
                                        cmocka_unit_test(at_the_depth_limit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
