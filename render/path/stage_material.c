@@ -152,7 +152,7 @@ static void look(const world *w, const path_hit *h, const path_scratch *x, uint3
     uint32_t set = t->texture->uv_set;
     vec2 at = {h->u[i], h->v[i]}, uv = set ? lookup_uv(w, h->triangle[i], set, at) : (vec2){x->tu[i], x->tv[i]};
     int32_t level = t->texture->levels ? texture_level(t->texture, footprint(w, h, x, i, set)) : 0;
-    t->tap = texture_find(t->texture, uv.x, uv.y, level);
+    texture_find(t->texture, uv.x, uv.y, level, &t->tap);
     texture_prefetch(&t->tap);
 }
 

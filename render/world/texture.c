@@ -51,12 +51,13 @@ static texel mix(texel a, texel b, float t) {
 }
 
 /* Level 0 is the picture. */
-static texture_grid grid_at(const world_texture *t, int32_t level) {
-    texture_grid g = {t->texels, t->width, t->height, t->format, t->curve};
-    if (level > 0) g = texture_grid_above(&g, t->levels);
-    for (int32_t k = 1; k < level; k++)
-        g = texture_grid_above(&g, texel_address(&g, 0, g.height));
-    return g;
+static void find_grid(const world_texture *t, int32_t level, texture_grid *g) {
+    g->texels = t->texels;
+    g->width = t->width, g->height = t->height;
+    g->format = t->format;
+    g->curve = t->curve;
+    for (int32_t k = 0; k < level; k++)
+        *g = texture_grid_above(g, k ? texel_address(g, 0, g->height) : t->levels);
 }
 
 int32_t texture_level(const world_texture *t, texture_footprint f) {
@@ -71,25 +72,25 @@ int32_t texture_level(const world_texture *t, texture_footprint f) {
     return level < t->level_count ? level : t->level_count;
 }
 
-texture_tap texture_find(const world_texture *t, float u, float v, int32_t level) {
+void texture_find(const world_texture *t, float u, float v, int32_t level, texture_tap *p) {
     const float *m = t->transform;
-    texture_tap p = {.grid = grid_at(t, level)};
-    const texture_grid *g = &p.grid;
+    texture_grid *g = &p->grid;
+    find_grid(t, level, g);
     float x = wrap(t->wrap_u, m[0] * u + m[1] * v + m[2]) * (float)g->width;
     float y = wrap(t->wrap_v, m[3] * u + m[4] * v + m[5]) * (float)g->height;
     if (t->nearest) {
         int32_t i = (int32_t)x, j = (int32_t)y;
-        p.i0 = p.i1 = i < g->width ? i : g->width - 1;
-        p.j0 = p.j1 = j < g->height ? j : g->height - 1;
-        return p;
+        p->i0 = p->i1 = i < g->width ? i : g->width - 1;
+        p->j0 = p->j1 = j < g->height ? j : g->height - 1;
+        p->fx = p->fy = 0.0f;
+        return;
     }
     /* Texel centres lie at halves. */
     float xf = fm_floor(x - 0.5f), yf = fm_floor(y - 0.5f);
     int32_t i = (int32_t)xf, j = (int32_t)yf;
-    p.fx = x - 0.5f - xf, p.fy = y - 0.5f - yf;
-    p.i0 = edge(t->wrap_u, i, g->width), p.i1 = edge(t->wrap_u, i + 1, g->width);
-    p.j0 = edge(t->wrap_v, j, g->height), p.j1 = edge(t->wrap_v, j + 1, g->height);
-    return p;
+    p->fx = x - 0.5f - xf, p->fy = y - 0.5f - yf;
+    p->i0 = edge(t->wrap_u, i, g->width), p->i1 = edge(t->wrap_u, i + 1, g->width);
+    p->j0 = edge(t->wrap_v, j, g->height), p->j1 = edge(t->wrap_v, j + 1, g->height);
 }
 
 void texture_prefetch(const texture_tap *p) {
@@ -118,11 +119,13 @@ float texture_read_channel(const world_texture *t, const texture_tap *p) {
 }
 
 texel texture_sample_level(const world_texture *t, float u, float v, int32_t level) {
-    texture_tap p = texture_find(t, u, v, level);
+    texture_tap p;
+    texture_find(t, u, v, level, &p);
     return texture_read(t, &p);
 }
 float texture_channel_level(const world_texture *t, float u, float v, int32_t level) {
-    texture_tap p = texture_find(t, u, v, level);
+    texture_tap p;
+    texture_find(t, u, v, level, &p);
     return texture_read_channel(t, &p);
 }
 

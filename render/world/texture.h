@@ -74,7 +74,9 @@ typedef struct texture_tap {
     int32_t i0, i1, j0, j1; /* columns, rows */
     float fx, fy;           /* of i1, of j1 */
 } texture_tap;
-texture_tap texture_find(const world_texture *, float u, float v, int32_t level);
+/* Written where it is kept: a tap that is copied is read before its parts have reached the cache, which costs more than
+ * the look-up. */
+void texture_find(const world_texture *, float u, float v, int32_t level, texture_tap *);
 void texture_prefetch(const texture_tap *);
 texel texture_read(const world_texture *, const texture_tap *);
 float texture_read_channel(const world_texture *, const texture_tap *);
