@@ -14,7 +14,10 @@ struct ray_coverage;
 struct world;
 
 /* What was asked of Embree. */
-typedef enum tape_query { TAPE_BEAM /* of coherent rays */, TAPE_CLOSEST, TAPE_VISIBLE, TAPE_VISIT } tape_query;
+typedef enum tape_query {
+    TAPE_BEAM, /* the closest hits of coherent rays */
+    TAPE_CLOSEST, TAPE_VISIBLE, TAPE_VISIT
+} tape_query;
 
 typedef struct tape_packet tape_packet;
 

@@ -49,7 +49,8 @@ static inline spectrum_line path_wavelength(const path_context *c, sample_point 
 }
 
 /* Traces count ≤ BATCH_PATHS samples to their end; b->out then holds their results by position in samples. Each sixteen
- * in a row are a packet of camera rays: which they are must be a matter of pixels and samples alone (ray_lanes.coherent). */
+ * in a row are a packet of camera rays: which they are must be a matter of pixels and samples alone
+ * (ray_lanes.coherent). */
 typedef void path_tracer(const path_context *, const path_sample *samples, uint32_t count, batch *);
 
 /* The same code, compiled for x86-64-v2, v3 and v4: the wanted one, or for NULL the best that this machine has, with its

@@ -3,7 +3,9 @@
 /* A lane that only fills up a group of sixteen. */
 #define FILLING (1u << 31)
 
-static bool is_alive(const path_state *s, uint32_t i) { return (s->tr[i] > 0.0f) | (s->tg[i] > 0.0f) | (s->tb[i] > 0.0f); }
+static bool is_alive(const path_state *s, uint32_t i) {
+    return (s->tr[i] > 0.0f) | (s->tg[i] > 0.0f) | (s->tb[i] > 0.0f);
+}
 
 /* So many lanes, whole groups, are where order has them. */
 static uint32_t in_place(const uint32_t *order, uint32_t count) {
