@@ -60,8 +60,10 @@ static void log_outputs(const json_t *stats) {
 static void log_end(const kiln_job_result *result, const json_t *stats) {
     const json_t *render = json_object_get(stats, "render"), *rules = json_object_get(render, "rules");
     kiln_text line = {0};
-    text_format(&line, "%u sample%s per pixel in %.2f s", result->stats.spp, result->stats.spp == 1 ? "" : "s",
-                result->stats.seconds);
+    const kiln_render_stats *s = &result->stats;
+    text_format(&line, "%u sample%s per pixel", s->spp, s->spp == 1 ? "" : "s");
+    if (s->spp_most > s->spp_least) text_format(&line, " (%u to %u)", s->spp_least, s->spp_most);
+    text_format(&line, " in %.2f s", s->seconds);
     if (result->error.known) text_format(&line, ", error %.2f%%", 100 * sqrt(result->error.relmse));
     switch (result->stats.stop) {
     case KILN_STOP_SPP: text_format(&line, "; ended by --spp %.0f", number_in(rules, "spp")); break;

@@ -90,6 +90,7 @@ kiln_render_options run_render_options(const job_run *r) {
                                  .noise = r->rules.noise,
                                  .error_scale = exp2(r->exposure),
                                  .budget_seconds = r->rules.budget_seconds,
+                                 .adaptive = o->adaptive,
                                  .seed = o->seed,
                                  .max_depth = o->max_depth ? o->max_depth : KILN_DEPTH_ZERO,
                                  .estimator = o->estimator,

@@ -43,6 +43,7 @@ typedef struct job_options {
     kiln_estimator estimator;
     kiln_roulette roulette;
     kiln_sampler sampler;
+    kiln_adaptive adaptive;
     kiln_light_sampling light_sampling;
     kiln_texture_filter texture_filter;
     const char *camera;

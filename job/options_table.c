@@ -12,6 +12,8 @@ static const option_choice light_samplings[] = {
     {"tree", KILN_LIGHTS_TREE}, {"power", KILN_LIGHTS_POWER}, {"uniform", KILN_LIGHTS_UNIFORM}, {NULL, 0}};
 static const option_choice texture_filters[] = {
     {"bilinear", KILN_TEXTURES_BILINEAR}, {"mip", KILN_TEXTURES_MIP}, {NULL, 0}};
+static const option_choice adaptivities[] = {
+    {"auto", KILN_ADAPTIVE_AUTO}, {"on", KILN_ADAPTIVE_ON}, {"off", KILN_ADAPTIVE_OFF}, {NULL, 0}};
 static const option_choice schemes[] = {{"auto", KILN_SCHEME_AUTO},
                                         {"catmull-clark", KILN_SCHEME_CATMULL_CLARK},
                                         {"loop", KILN_SCHEME_LOOP},
@@ -59,6 +61,11 @@ static const option_row rows[] = {
      .except = JOB_BENCH},
     {"budget", 0, "DURATION", quality, "ends after this time of rendering: 90, 90s, 500ms, 1.5m, 1h30m", NULL, NULL,
      "a time above 0 such as 90s or 1h30m", &option_duration, FIELD(budget_seconds), .except = JOB_BENCH},
+
+    {"adaptive", 0, "auto|on|off", quality,
+     "on: samples go to where they lower the error most, and --spp is their mean over the pixels; auto: where --noise or "
+     "--budget is a rule. The picture then depends on --crop",
+     "auto", NULL, "auto, on or off", &option_choices, adaptivities, FIELD(adaptive)},
 
     {"seed", 0, "N", estimator, "another seed gives another noise", "0", NULL, "a whole number from 0 to 2^64 - 1",
      &option_integer, FIELD(seed)},

@@ -173,6 +173,9 @@ static json_t *render_facts(const job_run *r) {
     put_bool(o, "noise_missed", run_missed_noise(r));
     put_number(o, "seconds", s->seconds);
     put_count(o, "samples_per_pixel", s->spp);
+    put_bool(o, "adaptive", s->adaptive);
+    put_count(o, "samples_per_pixel_least", s->spp_least);
+    put_count(o, "samples_per_pixel_most", s->spp_most);
     put_count(o, "samples", samples);
     put_count(o, "pixels_without_samples", s->unsampled);
     put_number(o, "samples_per_second", s->seconds > 0 ? (double)samples / s->seconds : NAN);

@@ -182,15 +182,22 @@ static bool find_pixel(const tile *t, uint32_t morton, path_sample *s, size_t *a
     return x < f->width && y < f->height;
 }
 
-/* The fewest samples that some pixels in a row have; the target, where there are none. */
-static uint32_t fewest(const tile *t, uint32_t morton, uint32_t pixels) {
-    uint32_t least = t->pass->target;
+static uint32_t target_of(const pass *p, size_t at) { return p->targets ? p->targets[at] : p->target; }
+
+/* Of some pixels in a row: the fewest samples that one has, and the most that one is to have; of none, nothing. */
+typedef struct demand { uint32_t fewest, most; } demand;
+
+static demand demand_of(const tile *t, uint32_t morton, uint32_t pixels) {
+    demand d = {UINT32_MAX, 0};
     for (uint32_t m = morton; m < morton + pixels; m++) {
         path_sample s;
         size_t at;
-        if (find_pixel(t, m, &s, &at) && t->pass->film->counts[at] < least) least = t->pass->film->counts[at];
+        if (!find_pixel(t, m, &s, &at)) continue;
+        uint32_t count = t->pass->film->counts[at], target = target_of(t->pass, at);
+        d.fewest = count < d.fewest ? count : d.fewest;
+        d.most = target > d.most ? target : d.most;
     }
-    return least;
+    return d;
 }
 
 /* LANE_GROUP samples, from the n-th on, of so many pixels. Those that are not to be had, off the film or there already,
@@ -204,7 +211,7 @@ static bool add_packet(tile *t, uint32_t morton, uint32_t pixels, uint32_t n) {
         bool held = find_pixel(t, m, &s, &at);
         for (uint32_t k = n; k < n + each; k++) {
             s.n = k;
-            s.idle = !held || k >= p->target || k < p->film->counts[at];
+            s.idle = !held || k >= target_of(p, at) || k < p->film->counts[at];
             p->workers[t->thread].samples[t->count++] = s;
         }
     }
@@ -221,11 +228,12 @@ static void trace_tile(pass *p, size_t item, uint32_t thread) {
               .x = tiles_origin(p->film, 0) + (uint32_t)(number % across) * TILE,
               .y = tiles_origin(p->film, 1) + (uint32_t)(number / across) * TILE};
     for (uint32_t m = 0; m < TILE * TILE; m += PIXELS) {
-        for (uint32_t n = fewest(&t, m, PIXELS); n < p->target && n < FIRST; n++)
+        demand d = demand_of(&t, m, PIXELS);
+        for (uint32_t n = d.fewest; n < d.most && n < FIRST; n++)
             if (!add_packet(&t, m, PIXELS, n)) return;
         for (uint32_t q = m; q < m + PIXELS; q += QUARTER) {
-            uint32_t n = fewest(&t, q, QUARTER) / EACH * EACH;
-            for (n = n < FIRST ? FIRST : n; n < p->target; n += EACH)
+            d = demand_of(&t, q, QUARTER);
+            for (uint32_t n = d.fewest < FIRST ? FIRST : d.fewest / EACH * EACH; n < d.most; n += EACH)
                 if (!add_packet(&t, q, QUARTER, n)) return;
         }
     }

@@ -1,4 +1,5 @@
-/* render/pass.h: one sweep over the film: every pixel is brought to the same number of samples. */
+/* render/pass.h: one sweep over the film: every pixel is brought to a number of samples, all to the same or each to its
+ * own. */
 #ifndef KILN_RENDER_PASS_H
 #define KILN_RENDER_PASS_H
 
@@ -32,6 +33,7 @@ typedef struct pass {
     double seconds;
 
     uint32_t target;   /* samples per pixel when the pass is done */
+    const uint32_t *targets; /* the same by pixel of the film; NULL: target for all */
     double deadline;   /* clock_seconds; 0: none */
     const volatile int *cancel;
     atomic_bool stopped; /* by the deadline or the cancel flag */
@@ -42,7 +44,7 @@ typedef struct pass {
 bool pass_make_workers(pass *); /* false: out of memory */
 void pass_free_workers(pass *);
 
-/* Brings every pixel to `target` samples, unless stopped: then some are left where they were. */
+/* Brings every pixel to its target, unless stopped: then some are left where they were. */
 void pass_run(pass *);
 
 /* What the workers have done so far, in seconds of all together. Between passes. */

@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/threads.h"
+#include "render/adaptive.h"
 #include "render/context.h"
 #include "render/pass.h"
 #include "render/record.h"
@@ -76,8 +77,16 @@ typedef struct run {
     uint32_t spp_limit;
     double started, last_tick, error, scale;
     uint64_t samples_before; /* that the film came with */
-    uint32_t spp_before, spp; /* in every pixel: then, and after the last pass */
+    uint32_t spp_before, spp; /* in every pixel, or the mean (is_adaptive): then, and after the last pass */
+    uint32_t *targets; /* by pixel; NULL: samples are not adaptive */
 } run;
+
+static uint32_t samples_per_pixel(const run *r) {
+    uint64_t pixels = (uint64_t)r->film->width * r->film->height;
+    uint32_t least = kiln_film_spp(r->film);
+    /* Planning rounds by up to a step in all. */
+    return r->targets && least >= ADAPTIVE_SPP_MIN ? (uint32_t)((kiln_film_samples(r->film) + pixels / 2) / pixels) : least;
+}
 
 static double seconds(const run *r) { return clock_seconds() - r->started; }
 
@@ -139,13 +148,22 @@ static bool is_quiet_enough(run *r) {
     return o->noise > 0 && r->spp >= NOISE_SPP_MIN && e.known && r->error <= o->noise;
 }
 
+/* Where the samples of the next pass go. What cannot be planned is spread evenly. */
+static void aim(run *r) {
+    uint64_t pixels = (uint64_t)r->film->width * r->film->height;
+    r->pass.target = next_target(r);
+    bool planned = r->targets && r->spp >= ADAPTIVE_SPP_MIN &&
+                   adaptive_plan(r->film, r->scale, r->pass.target * pixels, r->targets);
+    r->pass.targets = planned ? r->targets : NULL;
+}
+
 static kiln_stop run_passes(run *r) {
     const kiln_render_options *o = r->options;
     for (;;) {
-        r->spp = kiln_film_spp(r->film);
+        r->spp = samples_per_pixel(r);
         if (is_quiet_enough(r)) return KILN_STOP_NOISE;
         if (r->spp >= r->spp_limit) return KILN_STOP_SPP;
-        r->pass.target = next_target(r);
+        aim(r);
         pass_run(&r->pass);
         if (o->cancel && __atomic_load_n(o->cancel, __ATOMIC_RELAXED)) return KILN_STOP_CANCELLED;
         if (atomic_load(&r->pass.stopped)) return KILN_STOP_BUDGET;
@@ -153,8 +171,9 @@ static kiln_stop run_passes(run *r) {
 }
 
 static void collect(run *r, kiln_stop stop, kiln_render_stats *stats) {
-    r->spp = kiln_film_spp(r->film);
-    *stats = (kiln_render_stats){.stop = stop, .spp = r->spp, .seconds = seconds(r), .lost_energy = -1};
+    r->spp = samples_per_pixel(r);
+    *stats = (kiln_render_stats){.stop = stop, .spp = r->spp, .adaptive = r->targets != NULL,
+                                 .spp_least = kiln_film_spp(r->film), .seconds = seconds(r), .lost_energy = -1};
     pass_stage_seconds(&r->pass, stats->stage_seconds);
     stats->waiting_seconds = stats->seconds * r->pass.threads;
     for (int s = 0; s < KILN_STAGE_COUNT; s++) stats->waiting_seconds -= stats->stage_seconds[s];
@@ -179,7 +198,9 @@ static void collect(run *r, kiln_stop stop, kiln_render_stats *stats) {
         stats->discarded_pixel[d][1] = (uint32_t)(first[d] / r->film->desc.width);
     }
     for (size_t i = 0; i < (size_t)r->film->width * r->film->height; i++) {
-        stats->unsampled += r->film->counts[i] == 0;
+        uint32_t count = r->film->counts[i];
+        stats->unsampled += count == 0;
+        stats->spp_most = count > stats->spp_most ? count : stats->spp_most;
         for (int s = 0; s < KILN_REPLICATES; s++)
             for (int k = 0; k < 3; k++) kept += r->film->pixels[i].sum[s][k];
     }
@@ -198,13 +219,17 @@ static bool prepare(const kiln_renderer *renderer, const kiln_render_options *o,
     return done;
 }
 
+static bool is_adaptive(const kiln_render_options *o) {
+    bool judged = o->noise > 0 || o->budget_seconds > 0;
+    return o->adaptive == KILN_ADAPTIVE_ON || (o->adaptive == KILN_ADAPTIVE_AUTO && judged);
+}
+
 static bool render(const kiln_renderer *renderer, const kiln_render_options *o, const path_context *context,
                    kiln_film *film, ray_tape *tapes, kiln_render_stats *stats, kiln_report *report) {
     run r = {.options = o, .film = film, .started = clock_seconds(), .error = -1,
              .scale = o->error_scale > 0 ? o->error_scale : 1};
     bool any_rule = o->spp || o->noise > 0 || o->budget_seconds > 0;
     r.spp_limit = o->spp ? o->spp : any_rule ? FIXED_SAMPLES_MAX : 64;
-    r.spp = r.spp_before = kiln_film_spp(film);
     r.samples_before = kiln_film_samples(film);
     r.pass = (pass){.context = context, .film = film, .threads = renderer->threads, .cancel = o->cancel, .tick = tick,
                     .tick_user = &r,
@@ -214,7 +239,10 @@ static bool render(const kiln_renderer *renderer, const kiln_render_options *o, 
     r.pass.tracer = path_choose_tracer(o->isa, NULL);
     if (!r.pass.tracer)
         return report_error(report, KILN_CODE_USAGE, NULL, "leave it out", "this machine cannot run the instance '%s'", o->isa);
-    bool done = pass_make_workers(&r.pass) || report_no_memory(report, "starting the render");
+    if (is_adaptive(o)) r.targets = array_alloc((size_t)film->width * film->height, sizeof *r.targets);
+    bool done = (pass_make_workers(&r.pass) && (r.targets || !is_adaptive(o))) ||
+                report_no_memory(report, "starting the render");
+    r.spp = r.spp_before = samples_per_pixel(&r);
     if (done) {
         kiln_stop stop = run_passes(&r);
         kiln_render_stats own;
@@ -222,6 +250,7 @@ static bool render(const kiln_renderer *renderer, const kiln_render_options *o, 
         if (o->progress) report_progress(&r);
     }
     pass_free_workers(&r.pass);
+    free(r.targets);
     return done;
 }
 

@@ -101,6 +101,14 @@ typedef enum kiln_light_sampling {
     KILN_LIGHTS_UNIFORM /* all that emit alike: each triangle is one light */
 } kiln_light_sampling;
 
+/* Where samples go: to every pixel alike, or to where they lower the error most. */
+typedef enum kiln_adaptive {
+    KILN_ADAPTIVE_AUTO, /* ON where noise or budget_seconds is a rule, OFF where spp alone is */
+    KILN_ADAPTIVE_OFF,
+    KILN_ADAPTIVE_ON    /* after 16 samples in each pixel; spp is the mean over the pixels, none gets more than 16 times
+                           the mean. The picture depends on the whole crop, but not on threads */
+} kiln_adaptive;
+
 typedef enum kiln_pixel_filter { KILN_PIXEL_BLACKMAN_HARRIS, KILN_PIXEL_GAUSSIAN, KILN_PIXEL_BOX } kiln_pixel_filter;
 
 /* What the camera sees where it meets no surface; alpha is 0 there in any case. Reflections and refractions always see
@@ -112,7 +120,8 @@ typedef enum kiln_background {
 } kiln_background;
 
 typedef struct kiln_progress {
-    uint32_t spp_done;   /* samples that every pixel of the film has, those included that it came with */
+    uint32_t spp_done;   /* samples that every pixel of the film has, or the mean of them where they are adaptive, those
+                            included that it came with */
     uint64_t samples;    /* taken since the call began, in all pixels together, unfinished passes included */
     double fraction;     /* of the work that the stop rules leave, 0 … 1; an estimate for noise */
     double seconds, seconds_left; /* since the call began; left < 0: unknown */
@@ -128,6 +137,7 @@ typedef struct kiln_render_options {
     double noise;                /* target for the square root of the estimated relMSE, 0.01 for 1 % [no target] */
     double error_scale;          /* the picture is multiplied by this before its error is judged: 2^exposure [1] */
     double budget_seconds;       /* [no limit] */
+    kiln_adaptive adaptive;      /* [AUTO] */
     uint64_t seed;               /* another seed, another realisation of the noise [0] */
     uint32_t max_depth;          /* scattering events of a path [64]; KILN_DEPTH_ZERO for none */
     kiln_estimator estimator;
@@ -201,7 +211,9 @@ typedef enum kiln_stage {
 
 typedef struct kiln_render_stats {
     kiln_stop stop;
-    uint32_t spp;
+    uint32_t spp;        /* that every pixel has; the mean, rounded down, where samples were adaptive */
+    bool adaptive;
+    uint32_t spp_least, spp_most;
     double seconds;
     double stage_seconds[KILN_STAGE_COUNT]; /* of all threads together; shares estimated from one batch in seven */
     double waiting_seconds; /* of all threads together: for one another between passes, and estimates of the error */

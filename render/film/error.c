@@ -173,6 +173,12 @@ kiln_film_error kiln_film_estimate_error(const kiln_film *f, double scale) {
     return e;
 }
 
+void film_relative_errors(const kiln_film *f, double scale, float *values) {
+    walk_parts((walk){.film = f, .everywhere = true, .scale = scale, .values = values});
+    for (size_t i = 0; i < (size_t)f->width * f->height; i++)
+        if (values[i] < 0) values[i] = 0;
+}
+
 void film_error_map(const kiln_film *f, float *values) {
     walk_parts((walk){.film = f, .map = true, .everywhere = true, .values = values});
 }

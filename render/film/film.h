@@ -90,6 +90,10 @@ uint64_t film_part_bytes(const kiln_film_desc *);
 /* Mean radiance, and the variance of that mean as the replicates show it; variance < 0: unknown. */
 void film_read_pixel(const kiln_film *, size_t pixel, double mean[3], double variance[3]);
 
+/* Relative variance of every pixel's mean, as the estimate of the error pools it, pixels without a surface included; 0 of
+ * pixels that say nothing yet. */
+void film_relative_errors(const kiln_film *, double scale, float *values);
+
 /* Standard error by pixel, from its neighbourhood's replicates. */
 void film_error_map(const kiln_film *, float *values);
 
