@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/clock.h"
 #include "job/exposure.h"
 #include "job/machine.h"
 #include "job/metadata.h"
@@ -180,8 +181,42 @@ static void warn_of_estimator(const job_run *r) {
                        e == KILN_ESTIMATOR_NAIVE ? "lacks light" : "has light twice");
 }
 
+/* About, of formats with their usual settings. */
+static double seconds_of_writing(const job_run *r) {
+    const double nanoseconds[] = {[OUTPUT_DISPLAY] = 200, [OUTPUT_EXR] = 400, [OUTPUT_HDR] = 80, [OUTPUT_UNKNOWN] = 0};
+    double each = 0;
+    for (uint32_t i = 0; i < r->outputs.count; i++) each += nanoseconds[r->outputs.items[i].kind];
+    return 1e-9 * each * r->view.width * r->view.height;
+}
+
+/* --budget is for the whole run: what has gone, and what writing will take, is not there for samples; some always is. */
+static double budget_left(const job_run *r) {
+    double budget = r->rules.budget_seconds, left = budget - (clock_seconds() - r->started) - seconds_of_writing(r);
+    const double least = 0.05;
+    return budget > 0 ? fmax(left, least * budget) : 0;
+}
+
+/* What takes no longer is soon known. */
+#define WORTH_FORETELLING 5.0
+
+static void tell_prediction(const kiln_prediction *p, void *user) {
+    const job_run *r = user;
+    kiln_text line = {0};
+    double goal = 100 * r->rules.noise, before = clock_seconds() - r->started;
+    if (fmax(p->seconds, p->noise_seconds) < WORTH_FORETELLING) return;
+    if (p->noise_seconds >= 0) text_format(&line, "%g%% needs about %.0f s on this machine", goal, before + p->noise_seconds);
+    if (p->noise_seconds < 0 || p->noise_seconds > p->seconds)
+        text_format(&line, "%sin %.0f s the error will be about %.2g%%", line.length ? "; " : "", before + p->seconds,
+                    100 * p->error);
+    run_log(r, "%s", line.data ? line.data : "");
+    text_free(&line);
+}
+
 bool run_render(job_run *r) {
     kiln_render_options options = run_render_options(r);
+    options.budget_seconds = budget_left(r);
+    options.predict = tell_prediction;
+    options.predict_user = r;
     r->rendered = true;
     warn_of_estimator(r);
     if (!kiln_render(r->renderer, &options, r->film, &r->stats, r->report)) return false;

@@ -59,7 +59,7 @@ static const option_row rows[] = {
      "0: off. Giving any of these rules replaces the default; the first that is reached ends the render",
      NULL, "3% with --spp 1024", "a percentage from 0 to 100, such as 1.5%", &option_percent, FIELD(noise_percent),
      .except = JOB_BENCH},
-    {"budget", 0, "DURATION", quality, "ends after this time of rendering: 90, 90s, 500ms, 1.5m, 1h30m", NULL, NULL,
+    {"budget", 0, "DURATION", quality, "ends the run after this time, import and output included: 90, 90s, 500ms, 1.5m, 1h30m", NULL, NULL,
      "a time above 0 such as 90s or 1h30m", &option_duration, FIELD(budget_seconds), .except = JOB_BENCH},
 
     {"adaptive", 0, "auto|on|off", quality,

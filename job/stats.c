@@ -159,6 +159,16 @@ static json_t *error_facts(const job_run *r) {
     return o;
 }
 
+static json_t *prediction_facts(const kiln_prediction *p) {
+    if (!p->spp) return json_null();
+    json_t *o = json_object();
+    put_count(o, "samples_per_pixel", p->spp);
+    put_number(o, "seconds", p->seconds);
+    put_number(o, "error", p->error);
+    put_number(o, "noise_seconds", p->noise_seconds >= 0 ? p->noise_seconds : NAN);
+    return o;
+}
+
 static json_t *render_facts(const job_run *r) {
     static const char *const stops[] = {[KILN_STOP_SPP] = "spp", [KILN_STOP_NOISE] = "noise",
                                         [KILN_STOP_BUDGET] = "budget", [KILN_STOP_CANCELLED] = "interrupted"};
@@ -171,6 +181,7 @@ static json_t *render_facts(const job_run *r) {
     put(o, "rules", rules);
     put_text(o, "ended_by", stops[s->stop]);
     put_bool(o, "noise_missed", run_missed_noise(r));
+    put(o, "prediction", prediction_facts(&s->prediction));
     put_number(o, "seconds", s->seconds);
     put_count(o, "samples_per_pixel", s->spp);
     put_bool(o, "adaptive", s->adaptive);

@@ -8,7 +8,7 @@
 /* Targets are multiples of STEP: replicates take turns, and their sequences are best at even counts. No pixel gets more
  * than MOST times the mean: what pooled estimates promise beyond that they do not keep. A neighbourhood of 5 × 5 would gain
  * more, with a bias near a tenth of the error; of 7 × 7 it is less. */
-enum { STEP = 2 * KILN_REPLICATES, MOST = 16, REACH = 3 };
+enum { STEP = 2 * KILN_REPLICATES, MOST = 16, REACH = 3, QUARTER = 2 };
 
 /* What the film is to have of a pixel, before it is rounded. */
 static double wanted(const kiln_film *f, const float *weights, size_t i, double scale, double most) {
@@ -50,16 +50,54 @@ static void weigh(const kiln_film *f, double scale, float *weights, float *scrat
     for (size_t i = 0; i < pixels; i++) weights[i] = sqrtf(weights[i]);
 }
 
-/* Rounds to steps; what one pixel is denied the next one gets. */
+/* Of the pixels of a block, QUARTER a side and aligned with the picture, which packets of rays hold together. */
+typedef struct block { size_t pixels[QUARTER * QUARTER]; uint32_t count, least; double wanted; } block;
+
+static block look(const kiln_film *f, const float *weights, uint32_t x0, uint32_t y0, double scale, double most) {
+    block b = {.least = UINT32_MAX};
+    for (uint32_t y = y0; y < y0 + QUARTER; y++)
+        for (uint32_t x = x0; x < x0 + QUARTER; x++) {
+            uint32_t i = x - f->desc.crop[0], j = y - f->desc.crop[1]; /* huge to the left and above */
+            if (i >= f->width || j >= f->height) continue;
+            size_t at = (size_t)j * f->width + i;
+            b.pixels[b.count++] = at;
+            b.least = f->counts[at] < b.least ? f->counts[at] : b.least;
+            b.wanted += wanted(f, weights, at, scale, most);
+        }
+    return b;
+}
+
+/* Rounds to steps, of blocks: lanes of a packet would be idle where its pixels differ. What one block is denied the next
+ * one gets. */
 static void share_out(const kiln_film *f, const float *weights, double scale, double most, uint32_t *targets) {
     double owed = 0;
-    for (size_t i = 0; i < (size_t)f->width * f->height; i++) {
-        uint32_t have = f->counts[i];
-        double more = wanted(f, weights, i, scale, most) - (double)have + owed;
-        uint32_t steps = more > 0 ? (uint32_t)(more / STEP + 0.5) : 0;
-        targets[i] = have + steps * STEP;
-        owed = more - (double)(steps * STEP);
+    const uint32_t *crop = f->desc.crop;
+    for (uint32_t y = crop[1] / QUARTER * QUARTER; y < crop[3]; y += QUARTER)
+        for (uint32_t x = crop[0] / QUARTER * QUARTER; x < crop[2]; x += QUARTER) {
+            block b = look(f, weights, x, y, scale, most);
+            double more = (b.wanted + owed) / b.count - b.least, given = 0;
+            uint32_t target = b.least + (more > 0 ? (uint32_t)(more / STEP + 0.5) : 0) * STEP;
+            for (uint32_t k = 0; k < b.count; k++) {
+                uint32_t have = f->counts[b.pixels[k]];
+                targets[b.pixels[k]] = target > have ? target : have;
+                given += (double)targets[b.pixels[k]];
+            }
+            owed += b.wanted - given;
+        }
+}
+
+double adaptive_gain(const kiln_film *f, double scale) {
+    size_t pixels = (size_t)f->width * f->height;
+    float *weights = array_alloc(pixels, sizeof *weights), *scratch = array_alloc(pixels, sizeof *scratch);
+    double roots = 0, sum = 0;
+    if (weights && scratch) weigh(f, scale, weights, scratch);
+    for (size_t i = 0; weights && scratch && i < pixels; i++) {
+        roots += (double)weights[i];
+        sum += (double)weights[i] * (double)weights[i];
     }
+    free(weights);
+    free(scratch);
+    return sum > 0 ? roots * roots / ((double)pixels * sum) : 1;
 }
 
 bool adaptive_plan(const kiln_film *f, double scale, uint64_t samples, uint32_t *targets) {

@@ -13,8 +13,12 @@
 /* Fewer samples in each pixel are not evidence enough to spend others by. */
 enum { ADAPTIVE_SPP_MIN = 16 };
 
-/* Sets targets, one for each pixel, none below what it has, so that the film will have `samples` in all, but for less
- * than a step of them. scale: what the picture is multiplied by before it is judged. False: out of memory. */
+/* Sets targets, one for each pixel, none below what it has, so that the film will have `samples` in all, but for a
+ * block or so. scale: what the picture is multiplied by before it is judged. False: out of memory. */
 bool adaptive_plan(const kiln_film *, double scale, uint64_t samples, uint32_t *targets);
+
+/* By what relMSE at as many samples would be multiplied if all of them went where they are needed most: (mean √e)² over
+ * mean e, at most 1. 1 when memory is exhausted. */
+double adaptive_gain(const kiln_film *, double scale);
 
 #endif

@@ -9,6 +9,7 @@
 #include "render/adaptive.h"
 #include "render/context.h"
 #include "render/pass.h"
+#include "render/predict.h"
 #include "render/record.h"
 #include "scene/transfer.h"
 
@@ -79,6 +80,7 @@ typedef struct run {
     uint64_t samples_before; /* that the film came with */
     uint32_t spp_before, spp; /* in every pixel, or the mean (is_adaptive): then, and after the last pass */
     uint32_t *targets; /* by pixel; NULL: samples are not adaptive */
+    kiln_prediction prediction;
 } run;
 
 static uint32_t samples_per_pixel(const run *r) {
@@ -139,12 +141,23 @@ static bool is_power_of_two(uint32_t n) { return n && !(n & (n - 1)); }
 /* Fewer samples are not evidence enough to stop on. */
 enum { NOISE_SPP_MIN = 16 };
 
+/* With a budget early, for there may be no more than a few samples. Not of a film that came with samples: what they took
+ * is not known. */
+static void foretell(run *r) {
+    uint32_t enough = r->options->budget_seconds > 0 ? 4 : NOISE_SPP_MIN;
+    if (r->prediction.spp || r->error < 0 || r->spp < enough || r->spp_before) return;
+    predict_pilot pilot = {r->spp, seconds(r), r->error, r->targets ? adaptive_gain(r->film, r->scale) : 1};
+    r->prediction = predict(&pilot, r->options, r->spp_limit);
+    if (r->options->predict) r->options->predict(&r->prediction, r->options->predict_user);
+}
+
 /* The estimate takes as long as a sample or so in every pixel: it is made when somebody wants it. */
 static bool is_quiet_enough(run *r) {
     const kiln_render_options *o = r->options;
-    if (!is_power_of_two(r->spp) || !(o->noise > 0 || o->progress)) return false;
+    if (!is_power_of_two(r->spp) || !(o->noise > 0 || o->progress || o->predict)) return false;
     kiln_film_error e = kiln_film_estimate_error(r->film, r->scale);
     r->error = e.known ? sqrt(e.relmse) : -1;
+    foretell(r);
     return o->noise > 0 && r->spp >= NOISE_SPP_MIN && e.known && r->error <= o->noise;
 }
 
@@ -173,7 +186,8 @@ static kiln_stop run_passes(run *r) {
 static void collect(run *r, kiln_stop stop, kiln_render_stats *stats) {
     r->spp = samples_per_pixel(r);
     *stats = (kiln_render_stats){.stop = stop, .spp = r->spp, .adaptive = r->targets != NULL,
-                                 .spp_least = kiln_film_spp(r->film), .seconds = seconds(r), .lost_energy = -1};
+                                 .spp_least = kiln_film_spp(r->film), .seconds = seconds(r), .lost_energy = -1,
+                                 .prediction = r->prediction};
     pass_stage_seconds(&r->pass, stats->stage_seconds);
     stats->waiting_seconds = stats->seconds * r->pass.threads;
     for (int s = 0; s < KILN_STAGE_COUNT; s++) stats->waiting_seconds -= stats->stage_seconds[s];

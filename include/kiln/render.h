@@ -128,6 +128,14 @@ typedef struct kiln_progress {
     double error;        /* square root of the relMSE, as estimated at the last power of two of samples; < 0: unknown */
 } kiln_progress;
 
+/* What the first samples let expect. */
+typedef struct kiln_prediction {
+    uint32_t spp;         /* of the samples that it is made from */
+    double seconds;       /* of the call, until the first of its rules ends it */
+    double error;         /* √relMSE that it will have then */
+    double noise_seconds; /* until the goal for the noise would be reached, whatever the other rules; < 0: there is none */
+} kiln_prediction;
+
 typedef enum kiln_stop { KILN_STOP_SPP, KILN_STOP_NOISE, KILN_STOP_BUDGET, KILN_STOP_CANCELLED } kiln_stop;
 
 /* Zero-initialised options mean the defaults in brackets. */
@@ -152,6 +160,9 @@ typedef struct kiln_render_options {
                                     or from any thread by an atomic store [never] */
     void (*progress)(const kiln_progress *, void *user); /* from the calling thread, about ten times a second */
     void *progress_user;
+    void (*predict)(const kiln_prediction *, void *user); /* once, as soon as the error can be told: after 16 samples in
+                                    each pixel, with a budget from 4 on. The same thread */
+    void *predict_user;
     uint32_t batch_size;         /* for tests: paths that advance together, rounded up to 16s [1024] */
     uint64_t tile_shuffle;       /* for tests: another order of tiles, same bits [none] */
     const char *isa;             /* for tests: "v2", "v3", "v4": which instance of the stages runs, same bits [the best] */
@@ -222,6 +233,7 @@ typedef struct kiln_render_stats {
     uint32_t discarded_pixel[KILN_DISCARD_COUNT][2]; /* the first in reading order, where discarded > 0 */
     uint64_t unsampled; /* pixels of the film without a single sample, black: the render ended within its first pass */
     double lost_energy; /* estimated share of the picture's energy that the depth limit cut; < 0: unknown */
+    kiln_prediction prediction; /* spp 0: none was made */
 } kiln_render_stats;
 
 /* Adds samples to film until a stop rule holds. On failure or cancellation the film keeps what it has. options NULL:

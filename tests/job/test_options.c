@@ -35,6 +35,7 @@ static const struct { const char *name, *given, *printed;
     {"budget", "500ms", "0.5"},
     {"budget", "2s", "2"},
     {"budget", "1e7", "1e+07"},
+    {"adaptive", "on", NULL},
     {"seed", "18446744073709551615", NULL},
     {"threads", "7", NULL},
     {"max-depth", "0", NULL},
