@@ -140,6 +140,14 @@ static void compress(void *context, size_t item, uint32_t thread) {
     b->codes[item] = compress_block(b->writer, y, &b->blocks[item]);
 }
 
+/* Readers take a block for raw when it is as long as it would be raw. The library writes such a block, and any that would
+ * be longer, raw; but one that is by chance as long when compressed it leaves compressed. */
+static exr_result_t write_block(exr_context_t context, const exr_encode_pipeline_t *e) {
+    bool shorter = e->compressed_bytes < e->packed_bytes;
+    return exr_write_scanline_chunk(context, 0, e->chunk.start_y, shorter ? e->compressed_buffer : e->packed_buffer,
+                                    shorter ? e->compressed_bytes : e->packed_bytes);
+}
+
 static exr_result_t write_batch(batch *b, size_t count) {
     exr_context_t context = b->writer->context;
     exr_result_t code = EXR_ERR_SUCCESS;
@@ -147,8 +155,7 @@ static exr_result_t write_batch(batch *b, size_t count) {
     for (size_t i = 0; i < count; i++) {
         exr_encode_pipeline_t *e = &b->blocks[i];
         if (!code) code = b->codes[i];
-        if (!code)
-            code = exr_write_scanline_chunk(context, 0, e->chunk.start_y, e->compressed_buffer, e->compressed_bytes);
+        if (!code) code = write_block(context, e);
         exr_encoding_destroy(context, e);
     }
     return code;

@@ -71,6 +71,27 @@ static void pixels_come_back(void **state) {
     free(values);
 }
 
+/* Noise with more and more of it black: on the way from blocks that do not compress to those that do lie some that are
+ * exactly as long as they would be raw. */
+static void blocks_as_long_as_raw_come_back(void **state) {
+    (void)state;
+    enum { WIDTH = 24, HEIGHT = 16, COUNT = WIDTH * HEIGHT };
+    for (uint32_t n = 0; n < 400; n++) {
+        float values[COUNT];
+        for (uint32_t i = 0; i < COUNT; i++)
+            values[i] = i < n / 8 ? 0 : unit_float(hash32(COUNT * n + i)) + unit_float(hash32(~(COUNT * n + i))) * 0x1p-12f;
+        const kiln_exr_channel channel = {"Y", values, 1, true};
+        kiln_bytes file =
+            write_exr(&(kiln_exr_file){.width = WIDTH, .height = HEIGHT, .channels = &channel, .channel_count = 1});
+        kiln_image image = decode_well(file.data, file.size);
+        for (size_t i = 0; i < COUNT; i++)
+            if (value_at(&image, i) != values[i])
+                fail_msg("picture %u: %a, not %a", n, (double)value_at(&image, i), (double)values[i]);
+        image_free(&image);
+        file_free(&file);
+    }
+}
+
 static void a_crop_is_the_data_window(void **state) {
     (void)state;
     float values[2 * 3] = {1, 2, 3, 4, 5, 6};
@@ -211,6 +232,7 @@ static void failures_leave_nothing_behind(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pixels_come_back),
+        cmocka_unit_test(blocks_as_long_as_raw_come_back),
         cmocka_unit_test(a_crop_is_the_data_window),
         cmocka_unit_test(metadata_is_written),
         cmocka_unit_test(halves_are_clamped),
