@@ -48,7 +48,7 @@ static void wrong_options_are_refused(void **state) {
     const kiln_render_options wrong[] = {
         {.noise = NAN}, {.noise = -1}, {.noise = INFINITY}, {.budget_seconds = NAN}, {.budget_seconds = INFINITY},
         {.error_scale = NAN}, {.error_scale = -1}, {.filter_width = NAN}, {.filter_width = 65}, {.filter_width = -1},
-        {.estimator = (kiln_estimator)3}, {.estimator = (kiln_estimator)-1}, {.sampler = (kiln_sampler)2},
+        {.estimator = KILN_ESTIMATOR_DOUBLED + 1}, {.estimator = (kiln_estimator)-1}, {.sampler = (kiln_sampler)2},
         {.light_sampling = (kiln_light_sampling)3}, {.filter = (kiln_pixel_filter)3},
         {.background = (kiln_background)3}, {.background_color = {0, NAN, 0}},
         {.roulette = {.kind = (kiln_roulette_kind)4}}, {.roulette = {.kind = KILN_ROULETTE_FIXED, .p = NAN}},
