@@ -45,9 +45,9 @@ static const axis effect_axes[] = {{"effects", "", ALWAYS, NULL}, {NULL, NULL, A
 
 static const study_preset presets[] = {
     {"default", 224, 64, 4, NULL, all_axes, NULL},
-    {"roulette", 64, 500, 3, study_make_interior, roulette_axes, "roulette=fixed:0.6"},
+    {"roulette", 48, 500, 3, study_make_interior, roulette_axes, "roulette=fixed:0.6"},
     {"estimators", 128, 128, 4, study_make_mirrors, estimator_axes, NULL},
-    {"effects", 192, 64, 4, NULL, effect_axes, NULL},
+    {"effects", 160, 64, 4, NULL, effect_axes, NULL},
 };
 enum { PRESETS = sizeof presets / sizeof *presets };
 
