@@ -55,9 +55,10 @@ const study_preset *study_find_preset(const job_options *o, kiln_report *report)
     const char *names[PRESETS];
     kiln_text remedy = {0};
     kiln_where where = where_root("--preset");
+    for (size_t i = 0; i < PRESETS; i++)
+        if (strcmp(o->preset, presets[i].name) == 0) return &presets[i];
     for (size_t i = 0; i < PRESETS; i++) {
         names[i] = presets[i].name;
-        if (strcmp(o->preset, names[i]) == 0) return &presets[i];
         text_format(&remedy, "%s%s", i ? ", " : "give one of ", names[i]);
     }
     const char *nearest = text_nearest(o->preset, names, PRESETS);
