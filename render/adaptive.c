@@ -41,13 +41,21 @@ static void blur(const kiln_film *f, float *values, float *scratch) {
     for (uint32_t x = 0; x < f->width; x++) blur_line(scratch + x, values + x, f->height, f->width);
 }
 
-/* √e of every pixel, from its neighbourhood. */
-static void weigh(const kiln_film *f, double scale, float *weights, float *scratch) {
+/* √e of every pixel, from its neighbourhood; free(). NULL: out of memory. */
+static float *weigh(const kiln_film *f, double scale) {
     size_t pixels = (size_t)f->width * f->height;
-    film_relative_errors(f, scale, weights);
-    for (size_t i = 0; i < pixels; i++) weights[i] *= (float)f->counts[i];
-    blur(f, weights, scratch);
-    for (size_t i = 0; i < pixels; i++) weights[i] = sqrtf(weights[i]);
+    float *weights = array_alloc(pixels, sizeof *weights), *scratch = array_alloc(pixels, sizeof *scratch);
+    if (weights && scratch) {
+        film_relative_errors(f, scale, weights);
+        for (size_t i = 0; i < pixels; i++) weights[i] *= (float)f->counts[i];
+        blur(f, weights, scratch);
+        for (size_t i = 0; i < pixels; i++) weights[i] = sqrtf(weights[i]);
+    } else {
+        free(weights);
+        weights = NULL;
+    }
+    free(scratch);
+    return weights;
 }
 
 /* Of the pixels of a block, QUARTER a side and aligned with the picture, which packets of rays hold together. */
@@ -88,36 +96,37 @@ static void share_out(const kiln_film *f, const float *weights, double scale, do
 
 double adaptive_gain(const kiln_film *f, double scale) {
     size_t pixels = (size_t)f->width * f->height;
-    float *weights = array_alloc(pixels, sizeof *weights), *scratch = array_alloc(pixels, sizeof *scratch);
+    float *weights = weigh(f, scale);
     double roots = 0, sum = 0;
-    if (weights && scratch) weigh(f, scale, weights, scratch);
-    for (size_t i = 0; weights && scratch && i < pixels; i++) {
+    for (size_t i = 0; weights && i < pixels; i++) {
         roots += (double)weights[i];
         sum += (double)weights[i] * (double)weights[i];
     }
     free(weights);
-    free(scratch);
     return sum > 0 ? roots * roots / ((double)pixels * sum) : 1;
 }
 
-bool adaptive_plan(const kiln_film *f, double scale, uint64_t samples, uint32_t *targets) {
-    size_t pixels = (size_t)f->width * f->height;
-    float *weights = array_alloc(pixels, sizeof *weights), *scratch = array_alloc(pixels, sizeof *scratch);
-    bool done = weights && scratch;
-    if (done) {
-        double mean = (double)samples / (double)pixels, most = MOST * mean, low = 0, high = 1;
-        weigh(f, scale, weights, scratch);
-        while (high < 1e30 && wanted_in_all(f, weights, high, most) < (double)samples) high *= 2;
-        bool even = !(high < 1e30); /* nothing is known to err, or hardly anything */
-        for (size_t i = 0; even && i < pixels; i++) weights[i] = 1;
-        if (even) high = most;
-        for (int k = 0; k < 50; k++) {
-            double middle = 0.5 * (low + high);
-            *(wanted_in_all(f, weights, middle, most) < (double)samples ? &low : &high) = middle;
-        }
-        share_out(f, weights, high, most, targets);
+/* What weights are multiplied by for the film to have so many samples; by bisection. Where nothing is known to err, or
+ * hardly anything, all weights become alike. */
+static double find_scale(const kiln_film *f, float *weights, double samples, double most) {
+    double low = 0, high = 1;
+    while (high < 1e30 && wanted_in_all(f, weights, high, most) < samples) high *= 2;
+    if (!(high < 1e30)) {
+        for (size_t i = 0; i < (size_t)f->width * f->height; i++) weights[i] = 1;
+        high = most;
     }
+    for (int k = 0; k < 50; k++) {
+        double middle = 0.5 * (low + high);
+        *(wanted_in_all(f, weights, middle, most) < samples ? &low : &high) = middle;
+    }
+    return high;
+}
+
+bool adaptive_plan(const kiln_film *f, double scale, uint64_t samples, uint32_t *targets) {
+    double most = MOST * ((double)samples / ((double)f->width * f->height));
+    float *weights = weigh(f, scale);
+    if (!weights) return false;
+    share_out(f, weights, find_scale(f, weights, (double)samples, most), most, targets);
     free(weights);
-    free(scratch);
-    return done;
+    return true;
 }
